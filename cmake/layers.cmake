@@ -1,0 +1,41 @@
+# The arrows of the architecture, enforced by include paths: server -> api -> core, and inside core
+# asset, texture, sphere -> mesh, pipeline -> all. Every include names its layer ("core/mesh/weld.h"), and a target sees
+# a layer only through a link in the build tree that its own declaration asks for: a forbidden include does not build.
+
+# orbis_layer(NAME FOLDER dir [USES other layers…] [LIBRARIES …])
+# Makes the static library orbis_NAME from every .cpp directly in FOLDER.
+function(orbis_layer name)
+  cmake_parse_arguments(ARG "" "FOLDER" "USES;LIBRARIES" ${ARGN})
+  set(view ${CMAKE_BINARY_DIR}/layers/${name})
+  cmake_path(GET ARG_FOLDER PARENT_PATH parent)
+  file(MAKE_DIRECTORY ${view}/${parent})
+  if(ARG_FOLDER STREQUAL "core")
+    # The shared words lie beside their folders; only they belong to this layer.
+    file(MAKE_DIRECTORY ${view}/core)
+    file(GLOB words CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/core/*.h)
+    foreach(word ${words})
+      cmake_path(GET word FILENAME base)
+      file(CREATE_LINK ${word} ${view}/core/${base} SYMBOLIC)
+    endforeach()
+  else()
+    file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${ARG_FOLDER} ${view}/${ARG_FOLDER} SYMBOLIC)
+  endif()
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${ARG_FOLDER}/*.cpp)
+  if(sources)
+    add_library(orbis_${name} STATIC ${sources})
+    set(scope PUBLIC)
+  else()
+    add_library(orbis_${name} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  target_include_directories(orbis_${name} ${scope} ${view})
+  foreach(used ${ARG_USES})
+    target_link_libraries(orbis_${name} ${scope} orbis_${used})
+  endforeach()
+  if(sources)
+    target_link_libraries(orbis_${name} PRIVATE orbis_warnings ${ARG_LIBRARIES})
+  endif()
+endfunction()
+
+add_library(orbis_warnings INTERFACE)
+target_compile_options(orbis_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion)

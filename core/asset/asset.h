@@ -1,0 +1,119 @@
+// A model as orbis sees it: the triangle primitives as typed arrays, and around them the whole document, untouched.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/options.h"
+#include "core/vec3.h"
+
+namespace orbis::asset {
+
+using Bytes = std::vector<std::byte>;
+// Files that came with the request (multipart parts), by the name that a glTF's URI gives.
+using Attachments = std::map<std::string, Bytes, std::less<>>;
+
+enum class Format { glb, gltf, draco };
+
+// glTF component types, with glTF's own codes.
+enum class ComponentType : std::uint16_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
+[[nodiscard]] std::size_t size_of(ComponentType type);
+
+// One vertex attribute in its original component type, tightly packed: count * components values, so that what is
+// not touched is delivered to the bit.
+struct Attribute {
+  std::string name; // "POSITION", "NORMAL", "TEXCOORD_0", "JOINTS_0", "_CUSTOM", …
+  ComponentType type = ComponentType::f32;
+  bool normalized = false;
+  std::uint32_t components = 3; // 1 to 4 (SCALAR, VEC2, VEC3, VEC4)
+  Bytes data;
+
+  [[nodiscard]] std::size_t count() const { return data.size() / (components * size_of(type)); }
+  // Component c of vertex v as a number: normalized integers as glTF 2.0 section 3.6.2.2 says, others as they are.
+  [[nodiscard]] double get(std::size_t v, std::uint32_t c) const;
+  // The inverse: rounds and clamps to the component type.
+  void set(std::size_t v, std::uint32_t c, double value);
+};
+
+// One triangle primitive (mode 4, 5 or 6 in the input; here always a triangle list, always indexed).
+struct Primitive {
+  std::uint32_t mesh = 0, primitive = 0;       // its place in the document: /meshes/mesh/primitives/primitive
+  std::vector<std::uint32_t> indices;          // 3 per triangle, all below vertex_count()
+  std::vector<Attribute> attributes;           // all of the same count; POSITION among them
+  std::vector<std::vector<Attribute>> targets; // morph targets: deltas
+  std::optional<std::uint32_t> material;
+
+  [[nodiscard]] const Attribute* find(std::string_view name) const;
+  [[nodiscard]] std::size_t vertex_count() const;
+  // POSITION as floats (integers are exact in float up to 16 bits). Finite: read_asset has refused others.
+  [[nodiscard]] std::vector<Vec3f> positions() const;
+};
+
+// The base colour of a primitive's material, ready to be sampled.
+struct BaseColor {
+  Bytes image;                        // PNG, JPEG or WebP as in the input
+  std::string uv;                     // the attribute that samples it, e.g. "TEXCOORD_0"
+  int wrap_s = 10497, wrap_t = 10497; // glTF codes: 33071 clamp, 33648 mirror, 10497 repeat
+  // KHR_texture_transform as a 2x3 matrix, row-major: u' = m0 u + m1 v + m2, v' = m3 u + m4 v + m5
+  float transform[6] = {1, 0, 0, 0, 1, 0};
+};
+
+// Opaque: the JSON document and the buffers as they came.
+class Document;
+
+struct Asset {
+  Format format = Format::glb;
+  std::vector<Primitive> primitives; // triangles only; points and lines stay in the document
+  std::shared_ptr<const Document> document;
+  // Facts for the report: an external image that did not come with the request, an extension that was not understood, …
+  struct Note {
+    std::string code, message, where;
+  };
+  std::vector<Note> notes;
+};
+
+// Recognises the format by content, not by name or media type, and reads it.
+//
+// GLB, glTF JSON (data URIs; other URIs only from `attachments`), raw Draco. Understands
+// KHR_draco_mesh_compression, KHR_mesh_quantization, EXT_meshopt_compression, sparse accessors, strips and fans.
+// Never touches the file system or the network. Untrusted input: every accessor, view, index, node and size is
+// checked before it is used. Throws Error: malformed, unsupported_format, unsupported_feature, too_large,
+// missing_resource, invalid_geometry (NaN or infinity, with the vertex that has it; no triangles at all; a mesh that
+// every node shows at scale zero).
+[[nodiscard]] Asset read_asset(std::span<const std::byte> bytes, const Attachments& attachments, const Limits& limits);
+
+// The base colour texture of a primitive, or nothing where its material has none or its image did not come with the
+// request.
+[[nodiscard]] std::optional<BaseColor> base_color(const Asset& asset, const Primitive& primitive);
+
+// What replaces a primitive in the output.
+struct NewPrimitive {
+  std::vector<std::uint32_t> indices;
+  std::vector<Attribute> attributes; // with TEXCOORD_n of the atlas and _SPHERE
+  std::vector<std::vector<Attribute>> targets;
+  std::uint32_t atlas_texcoord = 0; // n
+};
+
+struct NewImage {
+  Bytes bytes;
+  std::string mime_type; // "image/png" or "image/jpeg"
+};
+
+// Writes the GLB: the document as it came (nodes, names, materials, skins, animations, cameras, extras, unknown
+// extensions), with primitive i of `asset` replaced by primitives[i], base colour textures by `atlas` on the
+// atlas' TEXCOORD set, and `extras_json` (a JSON object as text) under asset.extras.orbis. A raw Draco input becomes a
+// document with one node, mesh and material. Materials that other primitives use too are cloned, not changed.
+// Buffers hold only what is still referenced. Same input, same bytes.
+// With Compression::draco the new primitives are written with KHR_draco_mesh_compression, positions and _SPHERE
+// lossless (the sphere coordinates must not be quantised: they would fold).
+[[nodiscard]] Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, const NewImage& atlas,
+                                std::string_view extras_json, Compression compression);
+
+} // namespace orbis::asset

@@ -1,0 +1,27 @@
+// Vertices that were split at UV, normal or material seams, joined again for the topology.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/mesh/triangle_mesh.h"
+
+namespace orbis::mesh {
+
+struct Welded {
+  TriangleMesh mesh;                      // one vertex per distinct position; no triangle with a repeated vertex
+  std::vector<Index> vertex_of;           // input vertex -> welded vertex
+  std::vector<std::uint32_t> triangle_of; // welded triangle -> input triangle
+  std::vector<std::uint32_t> degenerate;  // input triangles left out: two corners became one vertex
+};
+
+// Joins vertices whose positions are equal (-0 equals 0). Vertices keep the order of their first appearance.
+// triangles: indices into positions, all in range. O(n).
+[[nodiscard]] Welded weld(std::span<const Vec3f> positions, std::span<const Triangle> triangles);
+
+// The same shape, but every input vertex stays its own: for meshes whose indices alone say what is connected.
+[[nodiscard]] Welded keep_indices(std::span<const Vec3f> positions, std::span<const Triangle> triangles);
+
+} // namespace orbis::mesh

@@ -1,0 +1,113 @@
+#include "core/options.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace orbis {
+namespace {
+
+constexpr std::array<OptionInfo, 8> table{{
+    {"objective", "isometric | shape-preserving", "isometric",
+     "what the map keeps: lengths as far as possible, or the paper's shape-preserving weights"},
+    {"threshold", "a number in (0, 1)", "0.995",
+     "shape-preserving only: relaxation stops when the best local improvement is above this"},
+    {"texture", "auto | pattern | cubemap | base_color", "auto",
+     "what the atlas shows: the model's own base colour where it has one, else a numbered test pattern"},
+    {"texture_size", "64 to 8192", "2048", "width of the atlas in texels"},
+    {"texture_format", "png | jpeg", "png", "how the atlas is stored in the result"},
+    {"jpeg_quality", "1 to 100", "90", "with texture_format=jpeg"},
+    {"compression", "none | draco", "none", "how the geometry is stored in the result"},
+    {"threads", "0 to 256", "0", "threads of the embedding, 0 for as many as the machine has; the result is the same"},
+}};
+
+[[noreturn]] void refuse(std::string_view name, std::string_view value) {
+  for (const OptionInfo& info : table) {
+    if (info.name == name) {
+      throw Error(ErrorCode::invalid_option,
+                  "option '" + std::string(name) + "' cannot be '" + std::string(value.substr(0, 64)) + "': it takes " +
+                      std::string(info.values),
+                  std::string(name));
+    }
+  }
+  std::string known;
+  for (const OptionInfo& info : table) known += (known.empty() ? "" : ", ") + std::string(info.name);
+  throw Error(ErrorCode::invalid_option,
+              "there is no option '" + std::string(name.substr(0, 64)) + "'; the options are " + known,
+              std::string(name.substr(0, 64)));
+}
+
+template <class T> T number(std::string_view name, std::string_view text, T low, T high) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !(value >= low && value <= high)) refuse(name, text);
+  return value;
+}
+
+template <class E, std::size_t N>
+E choice(std::string_view name, std::string_view text, const std::array<std::string_view, N>& names) {
+  for (std::size_t i = 0; i < N; ++i) {
+    if (names[i] == text) return static_cast<E>(i);
+  }
+  refuse(name, text);
+}
+
+constexpr std::array<std::string_view, 2> objectives{"isometric", "shape-preserving"};
+constexpr std::array<std::string_view, 4> sources{"auto", "pattern", "cubemap", "base_color"};
+constexpr std::array<std::string_view, 2> formats{"png", "jpeg"};
+constexpr std::array<std::string_view, 2> compressions{"none", "draco"};
+
+template <class E, std::size_t N> std::string text_of(E value, const std::array<std::string_view, N>& names) {
+  return std::string(names.at(static_cast<std::size_t>(value)));
+}
+
+// The shortest text that reads back as the same number.
+std::string text_of(double value) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
+} // namespace
+
+std::span<const OptionInfo> option_table() { return table; }
+
+void set_option(Options& options, std::string_view name, std::string_view value) {
+  if (name == "objective") {
+    options.objective = choice<Objective>(name, value, objectives);
+  } else if (name == "threshold") {
+    const double t = number<double>(name, value, 0.0, 1.0);
+    if (t <= 0.0 || t >= 1.0) refuse(name, value);
+    options.threshold = t;
+  } else if (name == "texture") {
+    options.texture = choice<TextureSource>(name, value, sources);
+  } else if (name == "texture_size") {
+    options.texture_size = number<std::uint32_t>(name, value, 64, 8192);
+  } else if (name == "texture_format") {
+    options.texture_format = choice<TextureFormat>(name, value, formats);
+  } else if (name == "jpeg_quality") {
+    options.jpeg_quality = number<std::uint32_t>(name, value, 1, 100);
+  } else if (name == "compression") {
+    options.compression = choice<Compression>(name, value, compressions);
+  } else if (name == "threads") {
+    options.threads = number<std::uint32_t>(name, value, 0, 256);
+  } else {
+    refuse(name, value);
+  }
+}
+
+std::string get_option(const Options& options, std::string_view name) {
+  if (name == "objective") return text_of(options.objective, objectives);
+  if (name == "threshold") return text_of(options.threshold);
+  if (name == "texture") return text_of(options.texture, sources);
+  if (name == "texture_size") return std::to_string(options.texture_size);
+  if (name == "texture_format") return text_of(options.texture_format, formats);
+  if (name == "jpeg_quality") return std::to_string(options.jpeg_quality);
+  if (name == "compression") return text_of(options.compression, compressions);
+  if (name == "threads") return std::to_string(options.threads);
+  refuse(name, "");
+}
+
+} // namespace orbis

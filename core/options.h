@@ -1,0 +1,51 @@
+// What a caller may ask for. One name everywhere: JSON "texture_size", query ?texture_size=, command line
+// --texture-size.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace orbis {
+
+enum class Objective { isometric, shape_preserving };
+enum class TextureSource { automatic, pattern, cubemap, base_color };
+enum class TextureFormat { png, jpeg };
+enum class Compression { none, draco };
+
+struct Options {
+  Objective objective = Objective::isometric;
+  // shape-preserving only: relaxation stops when the best local improvement ds(p*)/ds(p) is above this (paper: 0.995).
+  double threshold = 0.995;
+  // automatic: the model's own base colour where it has one that came with the request, else the test pattern.
+  TextureSource texture = TextureSource::automatic;
+  std::uint32_t texture_size = 2048; // width of the atlas in texels, 64 to 8192
+  TextureFormat texture_format = TextureFormat::png;
+  std::uint32_t jpeg_quality = 90; // 1 to 100
+  Compression compression = Compression::none;
+  std::uint32_t threads = 0; // 0: as many as the machine has; the result does not depend on it
+};
+
+// One row per option: its name, the values it takes (for people), its default, and what it does.
+struct OptionInfo {
+  std::string_view name, values, fallback, summary;
+};
+[[nodiscard]] std::span<const OptionInfo> option_table();
+
+// Sets one option from its text form. Throws Error{invalid_option} that names the option, the value and what is
+// allowed.
+void set_option(Options& options, std::string_view name, std::string_view value);
+// The text form of one option, as set_option takes it. Throws Error{invalid_option} for an unknown name.
+[[nodiscard]] std::string get_option(const Options& options, std::string_view name);
+
+// Limits that the operator sets, not the caller. Exceeding one throws Error{too_large} that names it and its value.
+struct Limits {
+  std::uint64_t max_bytes = 256ull << 20;       // the request's body
+  std::uint64_t max_triangles = 12'000'000;     // in the asset
+  std::uint64_t max_vertices = 24'000'000;      // in the asset, before welding
+  std::uint64_t max_image_pixels = 64ull << 20; // per image
+  std::uint32_t max_json_depth = 64;            // nesting of a glTF's JSON
+};
+
+} // namespace orbis

@@ -1,0 +1,39 @@
+// The way through the house: bytes in, bytes out. No HTTP, no job, no file system, no global state.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/options.h"
+#include "core/progress.h"
+#include "core/report.h"
+
+namespace orbis {
+
+struct Request {
+  std::span<const std::byte> model; // GLB, glTF JSON or Draco, recognised by content
+  // Files that came with the request, by name: a glTF's .bin and images; for texture=cubemap the six images
+  // ("px", "nx", "py", "ny", "pz", "nz", any extension) or one "equirectangular".
+  std::map<std::string, std::vector<std::byte>, std::less<>> files;
+  Options options;
+};
+
+struct Result {
+  std::vector<std::byte> glb;
+  std::vector<std::byte> atlas_png, preview_png; // pictures to look at
+  Report report;
+};
+
+// Called with a file name ("2-simplified.obj", "5-atlas.png", …) and its contents, for `orbis run --dump-stages`.
+using StageDump = std::function<void(std::string_view name, std::span<const std::byte> contents)>;
+
+// Does the whole job. Throws Error; never returns an uncertified result. `dump` may be empty.
+[[nodiscard]] Result process(const Request& request, const Limits& limits, Progress& progress,
+                             const StageDump& dump = {});
+
+} // namespace orbis

@@ -1,0 +1,32 @@
+// The proof that a result is a homeomorphism between the surface and the sphere (docs/parametrization.md).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "core/mesh/triangle_mesh.h"
+#include "core/vec3.h"
+
+namespace orbis::sphere {
+
+struct Certificate {
+  bool closed = false;   // every edge has exactly two triangles, in opposite directions
+  bool manifold = false; // the triangles around each vertex form one fan
+  bool connected = false;
+  std::int64_t euler_characteristic = 0;
+  std::uint64_t triangles = 0, vertices = 0;
+  std::uint64_t folded = 0;    // triangles whose exact orientation is not +1
+  std::uint64_t off_grid = 0;  // vertices with a coordinate that is not a multiple of 2^-24
+  double max_radius_error = 0; // max | |p| - 1 |
+  double degree = 0;           // sum of signed solid angles / 4 pi, before rounding
+  bool valid = false;          // all of it holds
+
+  // One sentence for a person that names the first thing that fails; empty where valid.
+  [[nodiscard]] std::string failure() const;
+};
+
+// points: one per vertex, as delivered (float32). triangles: the surface that was parametrized, indices into points.
+[[nodiscard]] Certificate certify(std::span<const Vec3f> points, std::span<const mesh::Triangle> triangles);
+
+} // namespace orbis::sphere
