@@ -1,0 +1,70 @@
+#include "core/mesh/weld.h"
+
+#include <bit>
+#include <limits>
+
+namespace orbis::mesh {
+namespace {
+
+constexpr Index none = std::numeric_limits<Index>::max();
+
+// The bits of a coordinate, with -0 as +0, so that equal numbers have equal bits (NaN does not come here).
+std::uint32_t bits_of(float v) { return std::bit_cast<std::uint32_t>(v + 0.0F); }
+
+std::uint64_t hash(const Vec3f& p) {
+  // One multiply-rotate round a coordinate: cheap, and good enough for open addressing at half load.
+  std::uint64_t h = 0x9E3779B97F4A7C15ULL;
+  for (const float c : {p.x, p.y, p.z}) h = std::rotl((h ^ bits_of(c)) * 0xD6E8FEB86659FD93ULL, 29);
+  return h ^ (h >> 32);
+}
+
+// Numbers distinct positions in the order of their first appearance: open addressing in a table of at least twice the size.
+std::vector<Index> number_positions(std::span<const Vec3f> positions, std::vector<Vec3f>& distinct) {
+  std::vector<Index> table(std::bit_ceil(positions.size() * 2 + 1), none);
+  const std::size_t mask = table.size() - 1;
+  std::vector<Index> number(positions.size());
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    std::size_t slot = hash(positions[v]) & mask;
+    while (table[slot] != none && !(distinct[table[slot]] == positions[v])) slot = (slot + 1) & mask;
+    if (table[slot] == none) {
+      table[slot] = static_cast<Index>(distinct.size());
+      distinct.push_back(positions[v]);
+    }
+    number[v] = table[slot];
+  }
+  return number;
+}
+
+Welded collect(std::span<const Triangle> triangles, std::vector<Index> vertex_of, std::vector<Vec3f> positions) {
+  Welded out;
+  out.mesh.positions = std::move(positions);
+  out.mesh.triangles.reserve(triangles.size());
+  out.triangle_of.reserve(triangles.size());
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    const Triangle w{vertex_of[triangles[t][0]], vertex_of[triangles[t][1]], vertex_of[triangles[t][2]]};
+    if (w[0] == w[1] || w[1] == w[2] || w[2] == w[0]) {
+      out.degenerate.push_back(t);
+    } else {
+      out.mesh.triangles.push_back(w);
+      out.triangle_of.push_back(t);
+    }
+  }
+  out.vertex_of = std::move(vertex_of);
+  return out;
+}
+
+} // namespace
+
+Welded weld(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
+  std::vector<Vec3f> distinct;
+  std::vector<Index> vertex_of = number_positions(positions, distinct);
+  return collect(triangles, std::move(vertex_of), std::move(distinct));
+}
+
+Welded keep_indices(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
+  std::vector<Index> vertex_of(positions.size());
+  for (std::size_t v = 0; v < vertex_of.size(); ++v) vertex_of[v] = static_cast<Index>(v);
+  return collect(triangles, std::move(vertex_of), {positions.begin(), positions.end()});
+}
+
+} // namespace orbis::mesh
