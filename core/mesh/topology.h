@@ -11,8 +11,8 @@ namespace orbis::mesh {
 
 struct Topology {
   std::uint64_t vertices = 0, edges = 0, triangles = 0; // of the welded surface; unused vertices do not count
-  std::uint32_t components = 0;                         // connected by edges
-  std::uint32_t boundary_loops = 0;
+  std::uint32_t components = 0;                         // connected by shared vertices
+  std::uint32_t boundary_loops = 0;                     // connected sets of boundary edges
   std::uint64_t boundary_edges = 0;
   std::uint64_t nonmanifold_edges = 0;    // three or more triangles
   std::uint64_t nonmanifold_vertices = 0; // the triangles around it form more than one fan (edges above excepted)

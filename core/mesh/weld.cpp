@@ -1,12 +1,9 @@
 #include "core/mesh/weld.h"
 
 #include <bit>
-#include <limits>
 
 namespace orbis::mesh {
 namespace {
-
-constexpr Index none = std::numeric_limits<Index>::max();
 
 // The bits of a coordinate, with -0 as +0, so that equal numbers have equal bits (NaN does not come here).
 std::uint32_t bits_of(float v) { return std::bit_cast<std::uint32_t>(v + 0.0F); }
@@ -18,21 +15,32 @@ std::uint64_t hash(const Vec3f& p) {
   return h ^ (h >> 32);
 }
 
-// Numbers distinct positions in the order of their first appearance: open addressing in a table of at least twice the size.
-std::vector<Index> number_positions(std::span<const Vec3f> positions, std::vector<Vec3f>& distinct) {
-  std::vector<Index> table(std::bit_ceil(positions.size() * 2 + 1), none);
+// Numbers the used vertices' distinct positions in the order of the vertices: open addressing at no more than half
+// load.
+std::vector<Index> number_positions(std::span<const Vec3f> positions, const std::vector<bool>& used,
+                                    std::vector<Vec3f>& distinct) {
+  std::vector<Index> table(std::bit_ceil(positions.size() * 2 + 1), unreferenced);
   const std::size_t mask = table.size() - 1;
-  std::vector<Index> number(positions.size());
+  std::vector<Index> number(positions.size(), unreferenced);
   for (std::size_t v = 0; v < positions.size(); ++v) {
+    if (!used[v]) continue;
     std::size_t slot = hash(positions[v]) & mask;
-    while (table[slot] != none && !(distinct[table[slot]] == positions[v])) slot = (slot + 1) & mask;
-    if (table[slot] == none) {
+    while (table[slot] != unreferenced && !(distinct[table[slot]] == positions[v])) slot = (slot + 1) & mask;
+    if (table[slot] == unreferenced) {
       table[slot] = static_cast<Index>(distinct.size());
       distinct.push_back(positions[v]);
     }
     number[v] = table[slot];
   }
   return number;
+}
+
+std::vector<bool> used_vertices(std::size_t count, std::span<const Triangle> triangles) {
+  std::vector<bool> used(count, false);
+  for (const Triangle& t : triangles) {
+    for (const Index v : t) used[v] = true;
+  }
+  return used;
 }
 
 Welded collect(std::span<const Triangle> triangles, std::vector<Index> vertex_of, std::vector<Vec3f> positions) {
@@ -57,14 +65,20 @@ Welded collect(std::span<const Triangle> triangles, std::vector<Index> vertex_of
 
 Welded weld(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
   std::vector<Vec3f> distinct;
-  std::vector<Index> vertex_of = number_positions(positions, distinct);
+  std::vector<Index> vertex_of = number_positions(positions, used_vertices(positions.size(), triangles), distinct);
   return collect(triangles, std::move(vertex_of), std::move(distinct));
 }
 
 Welded keep_indices(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
-  std::vector<Index> vertex_of(positions.size());
-  for (std::size_t v = 0; v < vertex_of.size(); ++v) vertex_of[v] = static_cast<Index>(v);
-  return collect(triangles, std::move(vertex_of), {positions.begin(), positions.end()});
+  const std::vector<bool> used = used_vertices(positions.size(), triangles);
+  std::vector<Index> vertex_of(positions.size(), unreferenced);
+  std::vector<Vec3f> kept;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    if (!used[v]) continue;
+    vertex_of[v] = static_cast<Index>(kept.size());
+    kept.push_back(positions[v]);
+  }
+  return collect(triangles, std::move(vertex_of), std::move(kept));
 }
 
 } // namespace orbis::mesh

@@ -10,9 +10,12 @@
 
 namespace orbis::mesh {
 
+// vertex_of for a vertex that no triangle uses.
+inline constexpr Index unreferenced = 0xFFFFFFFF;
+
 struct Welded {
-  TriangleMesh mesh;                      // one vertex per distinct position; no triangle with a repeated vertex
-  std::vector<Index> vertex_of;           // input vertex -> welded vertex
+  TriangleMesh mesh;                      // every vertex is used, no triangle repeats a vertex
+  std::vector<Index> vertex_of;           // input vertex -> vertex of mesh, or `unreferenced`
   std::vector<std::uint32_t> triangle_of; // welded triangle -> input triangle
   std::vector<std::uint32_t> degenerate;  // input triangles left out: two corners became one vertex
 };
