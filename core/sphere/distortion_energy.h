@@ -1,0 +1,110 @@
+// The symmetric Dirichlet energy of a piecewise map onto the sphere, written with the determinant instead of the
+// chordal area (docs/parametrization.md, "The energy"). For a triangle (p, a, b) with reference area A and reference
+// angles,
+//
+//   D = 1/2 sum cot(opposite angle) |edge|^2    Dirichlet energy of the linear map (Pinkall and Polthier 1993)
+//   V = det(p, a, b)                            twice the image's area to first order, 0 exactly at a fold
+//   E = D (1/4 + A^2 / V^2)                     = A (s1^2 + s2^2 + 1/s1^2 + 1/s2^2) / 4 to first order; A where
+//   isometric
+//
+// E is a barrier: it grows without bound exactly when the triangle stops being positively oriented as seen from the
+// centre.
+//
+// On the sphere |p| = 1, so D and V are both linear functions of p. Along the retraction p(s) = (p + s) / |p + s| of a
+// tangent vector s a linear function g . p has gradient g (its tangential part) and Hessian -(g . p) I at s = 0:
+//
+//   D: gradient -(cot_b a + cot_a b),  Hessian (cot_b a.p + cot_a b.p) I      V: gradient a x b,  Hessian -V I
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/sphere/reference.h"
+#include "core/sphere/sphere_math.h"
+#include "core/sphere/star_table.h"
+
+namespace orbis::sphere {
+
+// A triangle (p, a, b) of the star of p.
+struct StarTerm {
+  Vec3d a, b;
+  double cot_a, cot_b; // at a (opposite the edge p b) and at b (opposite p a)
+  double fixed;        // 1/2 cot_p |a - b|^2, which does not depend on p
+  double area_squared; // A^2
+};
+
+inline StarTerm make_term(const Vec3d& a, const Vec3d& b, const Reference& reference, std::size_t corner) {
+  const double area = double{reference.area};
+  return {a,
+          b,
+          double{reference.cot[(corner + 1) % 3]},
+          double{reference.cot[(corner + 2) % 3]},
+          0.5 * double{reference.cot[corner]} * squared_norm(a - b),
+          area * area};
+}
+
+// E of the star of p; infinite where a triangle is not positively oriented. p: unit length.
+inline double star_energy(std::span<const StarTerm> star, const Vec3d& p) {
+  double sum = 0;
+  for (const StarTerm& t : star) {
+    const Vec3d u = t.a - p, v = t.b - p;
+    const double V = dot(p, cross(u, v));
+    if (!(V > 0)) return std::numeric_limits<double>::infinity();
+    const double D = 0.5 * (t.cot_b * squared_norm(u) + t.cot_a * squared_norm(v)) + t.fixed;
+    sum += D * (0.25 + t.area_squared / (V * V));
+  }
+  return sum;
+}
+
+// Two orthonormal tangent vectors at p (Duff et al., Building an orthonormal basis, revisited, 2017).
+struct TangentFrame {
+  Vec3d x, y;
+  explicit TangentFrame(const Vec3d& p) {
+    const double sign = std::copysign(1.0, p.z), k = -1 / (sign + p.z), xy = p.x * p.y * k;
+    x = {1 + sign * p.x * p.x * k, sign * xy, -sign * p.x};
+    y = {xy, sign + p.y * p.y * k, -p.y};
+  }
+};
+
+// Second-order expansion of the star's energy in the tangent plane of p.
+struct Expansion {
+  double energy = 0;
+  double gx = 0, gy = 0;            // gradient
+  double hxx = 0, hxy = 0, hyy = 0; // Hessian
+};
+
+inline Expansion expand(std::span<const StarTerm> star, const Vec3d& p, const TangentFrame& frame) {
+  Expansion out;
+  for (const StarTerm& t : star) {
+    const Vec3d u = t.a - p, v = t.b - p;
+    const Vec3d uv = cross(u, v);
+    const double V = dot(p, uv);
+    const double D = 0.5 * (t.cot_b * squared_norm(u) + t.cot_a * squared_norm(v)) + t.fixed;
+    const Vec3d dD = -(t.cot_b * u + t.cot_a * v);
+    const Vec3d dV = cross(p, v - u) + uv; // a x b from differences, but for a part along p
+    const double Dx = dot(dD, frame.x), Dy = dot(dD, frame.y), Vx = dot(dV, frame.x), Vy = dot(dV, frame.y);
+    const double inverse = 1 / V, ratio = t.area_squared * inverse * inverse;
+    const double h = 0.25 + ratio;          // E = D h(V)
+    const double h1 = -2 * ratio * inverse; // h'
+    const double h2 = 3 * -h1 * inverse;    // h''
+    const double d_hessian = t.cot_b * dot(t.a, p) + t.cot_a * dot(t.b, p);
+    const double diagonal = h * d_hessian - D * h1 * V;
+    out.energy += D * h;
+    out.gx += h * Dx + D * h1 * Vx;
+    out.gy += h * Dy + D * h1 * Vy;
+    out.hxx += diagonal + 2 * h1 * Dx * Vx + D * h2 * Vx * Vx;
+    out.hyy += diagonal + 2 * h1 * Dy * Vy + D * h2 * Vy * Vy;
+    out.hxy += h1 * (Dx * Vy + Dy * Vx) + D * h2 * Vx * Vy;
+  }
+  return out;
+}
+
+// A Newton step from p that lowers the star's energy: the Hessian's eigenvalues are made positive, the step is cut
+// short of the nearest fold and halved until E falls. Returns p itself where no step does. `gain` becomes the fraction
+// of E that was gained.
+[[nodiscard]] Vec3d newton_step(std::span<const StarTerm> star, const Vec3d& p, double& gain);
+
+} // namespace orbis::sphere

@@ -1,0 +1,267 @@
+#include "core/sphere/hierarchy.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/sphere/star_table.h"
+
+namespace orbis::sphere {
+namespace {
+
+using mesh::Index;
+using mesh::Triangle;
+
+// Rings of more vertices are left for a later round, when their neighbours are fewer. A closed triangulation always
+// has a vertex of degree 5 or less, and a vertex of any degree has a legal parent: the edges outside its ring form an
+// outerplanar graph, of which at least two vertices have no edge.
+constexpr std::size_t most_ring_vertices = 16;
+// Of the candidates of a round, in ascending order of edge length, this part may go. All of them would make a level
+// a uniform subset of the vertices; less lets dense regions go first, as shortest-edge-first does.
+constexpr double candidate_quota = 0.7;
+
+struct Ring {
+  std::size_t size = 0;
+  std::array<Index, most_ring_vertices> vertices{};
+  std::array<std::uint32_t, most_ring_vertices> slots{};
+};
+
+// The star of v in counter-clockwise order, starting anywhere.
+Ring ring_of(std::span<const StarCorner> star) {
+  Ring ring;
+  ring.size = star.size();
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < star.size(); ++k) {
+    ring.vertices[k] = star[at].next;
+    ring.slots[k] = star[at].slot();
+    const Index next = star[at].previous;
+    for (std::size_t i = 0; i < star.size(); ++i) {
+      if (star[i].next == next) {
+        at = i;
+        break;
+      }
+    }
+  }
+  return ring;
+}
+
+void rotate_to(Ring& ring, std::size_t first) {
+  const auto by = static_cast<std::ptrdiff_t>(first), n = static_cast<std::ptrdiff_t>(ring.size);
+  std::rotate(ring.vertices.begin(), ring.vertices.begin() + by, ring.vertices.begin() + n);
+  std::rotate(ring.slots.begin(), ring.slots.begin() + by, ring.slots.begin() + n);
+}
+
+// Bit i is set where ring vertex i has an edge, outside the ring, to another ring vertex that is not beside it: it
+// cannot be the parent, for that edge would be there twice (the link condition). The ring vertex of the highest degree
+// need not be searched: its edges are seen from the other end.
+std::uint32_t chorded(const Ring& ring, const StarTable& stars) {
+  std::size_t largest = 0;
+  for (std::size_t i = 1; i < ring.size; ++i) {
+    if (stars.degree(ring.vertices[i]) > stars.degree(ring.vertices[largest])) largest = i;
+  }
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < ring.size; ++i) {
+    if (i == largest) continue;
+    for (const StarCorner& corner : stars[ring.vertices[i]]) {
+      for (std::size_t j = 0; j < ring.size; ++j) {
+        const std::size_t apart = j > i ? j - i : i - j;
+        if (ring.vertices[j] == corner.next && apart > 1 && apart < ring.size - 1) bits |= 1U << i | 1U << j;
+      }
+    }
+  }
+  return bits;
+}
+
+// Edges that this round has made, in a hash table with open addressing.
+class EdgeSet {
+public:
+  void reset(std::size_t most_edges) { table_.assign(std::bit_ceil(most_edges * 2 + 2), 0); }
+  [[nodiscard]] bool contains(Index a, Index b) const { return table_[find(key_of(a, b))] != 0; }
+  void insert(Index a, Index b) { table_[find(key_of(a, b))] = key_of(a, b); }
+
+private:
+  static std::uint64_t key_of(Index a, Index b) { return (std::uint64_t{std::max(a, b)} << 32) | std::min(a, b); }
+  [[nodiscard]] std::size_t find(std::uint64_t key) const {
+    const std::size_t mask = table_.size() - 1;
+    std::size_t at = (key * 0x9E3779B97F4A7C15ULL >> 20) & mask;
+    while (table_[at] != 0 && table_[at] != key) at = (at + 1) & mask;
+    return at;
+  }
+  std::vector<std::uint64_t> table_; // 0: free; no edge has key 0, since its larger vertex is not 0
+};
+
+struct Candidate {
+  float cost;
+  Index vertex;
+  std::uint8_t parent; // place in the ring as ring_of gives it
+};
+
+constexpr float not_now = std::numeric_limits<float>::infinity();
+
+// Takes a mesh apart, round by round.
+class Decimation {
+public:
+  Decimation(const mesh::TriangleMesh& mesh, mesh::ThreadPool& pool);
+  Hierarchy run(Progress& progress);
+
+private:
+  void find_candidates();
+  [[nodiscard]] Candidate best_collapse(Index v) const;
+  void remove_independent();
+  [[nodiscard]] bool makes_double_edge(const Ring& ring) const;
+  void remove(Index v, const Ring& ring);
+  void drop_dead();
+
+  std::vector<Vec3d> positions_; // brought to the unit cube
+  mesh::ThreadPool& pool_;
+  Hierarchy out_;
+  StarTable stars_;
+  std::vector<Index> vertices_;      // live
+  std::vector<std::uint32_t> slots_; // live
+  std::vector<Candidate> candidates_;
+  std::vector<std::uint32_t> dead_slots_;
+  std::vector<std::uint8_t> state_; // by vertex: free, kept in this round, removed
+  EdgeSet new_edges_;
+};
+
+enum : std::uint8_t { vertex_free, vertex_kept, vertex_removed };
+constexpr Index dead_triangle = std::numeric_limits<Index>::max();
+
+Decimation::Decimation(const mesh::TriangleMesh& mesh, mesh::ThreadPool& pool) : pool_(pool) {
+  positions_ = unit_positions(mesh);
+  out_.triangles = mesh.triangles;
+  out_.ring_first.push_back(0);
+  out_.round_first.push_back(0);
+  vertices_.resize(mesh.positions.size());
+  std::iota(vertices_.begin(), vertices_.end(), 0U);
+  slots_.resize(mesh.triangles.size());
+  std::iota(slots_.begin(), slots_.end(), 0U);
+  state_.assign(mesh.positions.size(), vertex_free);
+  out_.removed.reserve(mesh.positions.size());
+  out_.ring_first.reserve(mesh.positions.size());
+  out_.ring_vertices.reserve(mesh.triangles.size() * 3);
+  out_.ring_slots.reserve(mesh.triangles.size() * 3);
+}
+
+Candidate Decimation::best_collapse(Index v) const {
+  Candidate best{not_now, v, 0};
+  const std::span<const StarCorner> star = stars_[v];
+  if (star.size() > most_ring_vertices) return best;
+  const Ring ring = ring_of(star);
+  const std::uint32_t illegal = chorded(ring, stars_);
+  for (std::size_t k = 0; k < ring.size; ++k) {
+    if ((illegal >> k & 1U) != 0) continue;
+    const double length = norm(positions_[ring.vertices[k]] - positions_[v]);
+    const auto cost = static_cast<float>(length);
+    if (cost < best.cost) best = {cost, v, static_cast<std::uint8_t>(k)};
+  }
+  return best;
+}
+
+void Decimation::find_candidates() {
+  stars_.build(out_.triangles, slots_, positions_.size());
+  candidates_.resize(vertices_.size());
+  pool_.for_blocks(vertices_.size(), 2048, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) candidates_[i] = best_collapse(vertices_[i]);
+  });
+  std::erase_if(candidates_, [](const Candidate& c) { return c.cost == not_now; });
+  const auto quota = static_cast<std::ptrdiff_t>(std::ceil(static_cast<double>(candidates_.size()) * candidate_quota));
+  const auto order = [](const Candidate& a, const Candidate& b) {
+    return a.cost != b.cost ? a.cost < b.cost : a.vertex < b.vertex;
+  };
+  std::nth_element(candidates_.begin(), candidates_.begin() + quota - 1, candidates_.end(), order);
+  candidates_.resize(static_cast<std::size_t>(quota));
+  std::sort(candidates_.begin(), candidates_.end(), order);
+}
+
+bool Decimation::makes_double_edge(const Ring& ring) const {
+  for (std::size_t k = 2; k + 1 < ring.size; ++k) {
+    if (new_edges_.contains(ring.vertices[0], ring.vertices[k])) return true;
+  }
+  return false;
+}
+
+void Decimation::remove(Index v, const Ring& ring) {
+  state_[v] = vertex_removed;
+  out_.removed.push_back(v);
+  for (std::size_t k = 0; k < ring.size; ++k) {
+    state_[ring.vertices[k]] = vertex_kept;
+    out_.ring_vertices.push_back(ring.vertices[k]);
+    out_.ring_slots.push_back(ring.slots[k]);
+  }
+  out_.ring_first.push_back(static_cast<std::uint32_t>(out_.ring_vertices.size()));
+  for (std::size_t k = 1; k + 1 < ring.size; ++k) {
+    out_.triangles[ring.slots[k]] = {ring.vertices[0], ring.vertices[k], ring.vertices[k + 1]};
+    if (k > 1) new_edges_.insert(ring.vertices[0], ring.vertices[k]);
+  }
+  out_.triangles[ring.slots[0]][0] = dead_triangle;
+  out_.triangles[ring.slots[ring.size - 1]][0] = dead_triangle;
+}
+
+void Decimation::remove_independent() {
+  new_edges_.reset(slots_.size() / 2);
+  std::size_t left = vertices_.size();
+  for (const Candidate& c : candidates_) {
+    if (left == 4) break;
+    if (state_[c.vertex] != vertex_free) continue;
+    Ring ring = ring_of(stars_[c.vertex]);
+    rotate_to(ring, c.parent);
+    if (makes_double_edge(ring)) continue;
+    remove(c.vertex, ring);
+    --left;
+  }
+  out_.round_first.push_back(static_cast<std::uint32_t>(out_.removed.size()));
+}
+
+void Decimation::drop_dead() {
+  std::erase_if(vertices_, [&](Index v) { return state_[v] == vertex_removed; });
+  std::erase_if(slots_, [&](std::uint32_t s) { return out_.triangles[s][0] == dead_triangle; });
+  for (const Index v : vertices_) state_[v] = vertex_free;
+}
+
+Hierarchy Decimation::run(Progress& progress) {
+  const std::uint64_t total = vertices_.size() - 4;
+  while (vertices_.size() > 4) {
+    progress.check();
+    find_candidates();
+    remove_independent();
+    drop_dead();
+    progress.report(Stage::simplify, out_.removed.size(), total);
+  }
+  std::copy(vertices_.begin(), vertices_.end(), out_.tetrahedron.begin());
+  std::copy(slots_.begin(), slots_.end(), out_.tetrahedron_slots.begin());
+  return std::move(out_);
+}
+
+} // namespace
+
+void Hierarchy::undo(std::size_t i) {
+  const auto vertices = ring(i);
+  const auto places = slots(i);
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    triangles[places[k]] = {removed[i], vertices[k], vertices[(k + 1) % vertices.size()]};
+  }
+}
+
+std::vector<Vec3d> unit_positions(const mesh::TriangleMesh& mesh) {
+  Vec3d low(mesh.positions.front()), high = low;
+  for (const Vec3f& p : mesh.positions) {
+    low = {std::min(low.x, double{p.x}), std::min(low.y, double{p.y}), std::min(low.z, double{p.z})};
+    high = {std::max(high.x, double{p.x}), std::max(high.y, double{p.y}), std::max(high.z, double{p.z})};
+  }
+  const Vec3d size = high - low;
+  const double extent = std::max({size.x, size.y, size.z});
+  const double scale = extent > 0 ? 1 / extent : 1;
+  std::vector<Vec3d> out;
+  out.reserve(mesh.positions.size());
+  for (const Vec3f& p : mesh.positions) out.push_back((Vec3d(p) - low) * scale);
+  return out;
+}
+
+Hierarchy build_hierarchy(const mesh::TriangleMesh& mesh, mesh::ThreadPool& pool, Progress& progress) {
+  return Decimation(mesh, pool).run(progress);
+}
+
+} // namespace orbis::sphere

@@ -1,0 +1,163 @@
+// The default objective: the symmetric Dirichlet energy of distortion_energy.h, minimised on a hierarchy (method in
+// docs/parametrization.md).
+//
+// The mesh is taken apart in rounds of independent vertex removals. From the tetrahedron on, each round's vertices are
+// put back at once, every one into the kernel of its polygon, and the level is relaxed by sweeps of local Newton steps.
+// A vertex whose step gains little falls asleep until a neighbour's move wakes it, so the work goes where the map is
+// bad. Low frequencies move on coarse levels, where a sweep costs little.
+//
+// Everything is done in an order that does not depend on the number of threads.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/sphere/embedding.h"
+#include "core/sphere/hierarchy.h"
+#include "core/sphere/insertion.h"
+#include "core/sphere/reference.h"
+#include "core/sphere/relaxation.h"
+#include "core/sphere/star_table.h"
+
+namespace orbis::sphere {
+namespace {
+
+using mesh::Index;
+
+// Coarse levels have slivers that the surface does not have: their shapes are rounded off. The finest level is taken as
+// it is, but for triangles without area.
+constexpr double coarse_regularisation = 0.05;
+constexpr double fine_regularisation = 1e-6;
+// Sweeps a level: many where the level is small and the sweeps decide where the limbs go, few where it is large.
+constexpr double sweep_budget = 20'000; // vertices times sweeps
+constexpr double fewest_sweeps = 8, most_sweeps = 50;
+// A step is worthwhile where it gains this part of the star's energy; less on levels of fewer than 2,000 vertices.
+constexpr double worthwhile_gain = 0.01, smallest_gain = 1e-4, small_level = 2'000;
+constexpr std::uint32_t final_sweeps = 16;
+constexpr double final_gain = 0.003;
+
+class Refinement {
+public:
+  Refinement(Hierarchy hierarchy, std::vector<Vec3d> positions, mesh::ThreadPool& pool);
+  void refine(Progress& progress);
+  void optimise(Progress& progress);
+  [[nodiscard]] std::vector<Vec3d> points() && { return std::move(points_); }
+  std::uint64_t relaxations = 0;
+  bool converged = true;
+
+private:
+  void insert_round(std::size_t round);
+  void insert(std::size_t removal);
+  void prepare_level(double regularisation);
+  // Sweeps over what is active, all at first. Returns whether no step is worthwhile any more.
+  bool relax(std::uint32_t sweeps, double worthwhile, Progress& progress);
+  Level level() const { return {vertices_, stars_, references_, coloring_}; }
+
+  Hierarchy hierarchy_;
+  std::vector<Vec3d> positions_; // of the surface
+  mesh::ThreadPool& pool_;
+  std::vector<Vec3d> points_;   // on the sphere
+  std::vector<Index> vertices_; // live
+  std::vector<std::uint32_t> slots_;
+  std::vector<Reference> references_; // by slot
+  StarTable stars_;
+  Active active_;
+  Coloring coloring_;
+};
+
+Refinement::Refinement(Hierarchy hierarchy, std::vector<Vec3d> positions, mesh::ThreadPool& pool)
+    : hierarchy_(std::move(hierarchy)), positions_(std::move(positions)), pool_(pool), points_(positions_.size()),
+      references_(hierarchy_.triangles.size()), active_(positions_.size(), 0) {
+  vertices_.assign(hierarchy_.tetrahedron.begin(), hierarchy_.tetrahedron.end());
+  slots_.assign(hierarchy_.tetrahedron_slots.begin(), hierarchy_.tetrahedron_slots.end());
+  const mesh::Triangle& t = hierarchy_.triangles[slots_[0]];
+  Index apex = 0;
+  for (const Index v : vertices_) {
+    if (v != t[0] && v != t[1] && v != t[2]) apex = v;
+  }
+  // The regular tetrahedron, its first face counter-clockwise seen from outside.
+  const double h = std::sqrt(8.0) / 3, w = std::sqrt(2.0 / 3);
+  points_[apex] = {0, 0, 1};
+  points_[t[0]] = {h, 0, -1.0 / 3};
+  points_[t[1]] = {-h / 2, -w, -1.0 / 3};
+  points_[t[2]] = {-h / 2, w, -1.0 / 3};
+}
+
+void Refinement::insert(std::size_t removal) {
+  std::vector<Vec3d> polygon;
+  for (const Index v : hierarchy_.ring(removal)) polygon.push_back(points_[v]);
+  const std::optional<Vec3d> place = point_in_kernel(polygon);
+  if (!place) throw Error(ErrorCode::not_certified, "a vertex found no place on the sphere that sees its whole ring");
+  points_[hierarchy_.removed[removal]] = *place;
+}
+
+void Refinement::insert_round(std::size_t round) {
+  const std::uint32_t begin = hierarchy_.round_first[round], end = hierarchy_.round_first[round + 1];
+  for (std::uint32_t i = begin; i < end; ++i) {
+    insert(i);
+    hierarchy_.undo(i);
+    vertices_.push_back(hierarchy_.removed[i]);
+    slots_.push_back(hierarchy_.slots(i).front());
+    slots_.push_back(hierarchy_.slots(i).back());
+  }
+}
+
+void Refinement::prepare_level(double regularisation) {
+  compute_references(positions_, hierarchy_.triangles, slots_, regularisation, pool_, references_);
+  stars_.build(hierarchy_.triangles, slots_, positions_.size());
+  coloring_.build(vertices_, stars_);
+}
+
+bool Refinement::relax(std::uint32_t sweeps, double worthwhile, Progress& progress) {
+  for (const Index v : vertices_) active_[v] = 1;
+  for (std::uint32_t i = 0; i < sweeps; ++i) {
+    progress.check();
+    const std::size_t moves = relax_active(level(), worthwhile, points_, active_, pool_);
+    relaxations += moves;
+    if (moves == 0) return true;
+  }
+  return false;
+}
+
+void Refinement::refine(Progress& progress) {
+  for (std::size_t round = hierarchy_.rounds(); round-- > 0;) {
+    insert_round(round);
+    prepare_level(round == 0 ? fine_regularisation : coarse_regularisation);
+    const auto live = static_cast<double>(vertices_.size());
+    relax(static_cast<std::uint32_t>(std::clamp(sweep_budget / live, fewest_sweeps, most_sweeps)),
+          std::clamp(worthwhile_gain * live / small_level, smallest_gain, worthwhile_gain), progress);
+    progress.report(Stage::refine, vertices_.size(), points_.size());
+  }
+}
+
+void Refinement::optimise(Progress& progress) {
+  if (hierarchy_.rounds() == 0) prepare_level(fine_regularisation); // the input is a tetrahedron
+  converged = relax(final_sweeps, final_gain, progress);
+  progress.report(Stage::optimise, 1, 1);
+}
+
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+} // namespace
+
+Embedding embed_isometric(const mesh::TriangleMesh& mesh, std::uint32_t threads, Progress& progress) {
+  mesh::ThreadPool pool(threads);
+  Embedding out;
+  auto start = std::chrono::steady_clock::now();
+  Hierarchy hierarchy = build_hierarchy(mesh, pool, progress);
+  out.t1_ms = milliseconds_since(start);
+  start = std::chrono::steady_clock::now();
+  Refinement refinement(std::move(hierarchy), unit_positions(mesh), pool);
+  refinement.refine(progress);
+  out.t2_ms = milliseconds_since(start);
+  start = std::chrono::steady_clock::now();
+  refinement.optimise(progress);
+  out.t3_ms = milliseconds_since(start);
+  out.relaxations = refinement.relaxations;
+  out.converged = refinement.converged;
+  out.points = std::move(refinement).points();
+  return out;
+}
+
+} // namespace orbis::sphere
