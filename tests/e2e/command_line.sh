@@ -1,0 +1,53 @@
+# shellcheck shell=bash
+# `orbis run`: the same job without a server. The image's tests run it in a container of its own.
+
+# run_orbis INPUT [ARGUMENTS…]: sets EXIT; the result is $work/run.glb, the report $work/run.json, standard error
+# $work/run.err.
+run_orbis() {
+  local input=$1
+  shift
+  rm -f "$work"/run.{glb,json,err}
+  EXIT=0
+  "$orbis" run "$input" -o "$work/run.glb" --report "$work/run.json" "$@" 2>"$work/run.err" || EXIT=$?
+}
+
+need_binary() { [ -z "${ORBIS_IMAGE:-}" ] || skip "the image is tested through its service"; }
+
+test_run_writes_the_result_and_the_report() {
+  need_binary
+  run_orbis "$models/egg.glb" --texture-size 512
+  expect "the exit status" "$EXIT" 0
+  expect "the first bytes" "$(head -c 4 "$work/run.glb")" glTF
+  expect "the certificate" "$(jq .certificate.valid "$work/run.json")" true
+  expect "the texture's size" "$(jq .options.texture_size "$work/run.json")" 512
+  cp "$work/run.glb" "$outputs/command-line.glb"
+}
+
+test_run_gives_the_same_bytes_as_the_service() {
+  need_binary
+  run_orbis "$models/egg.glb"
+  textured same-as-run "$models/egg.glb"
+  cmp "$work/run.glb" "$outputs/same-as-run.glb" || fail "the two results differ"
+}
+
+test_run_refuses_a_torus_with_2_and_the_problem_document() {
+  need_binary
+  run_orbis "$models/torus.glb"
+  expect "the exit status" "$EXIT" 2
+  expect "the problem" "$(jq --raw-output .type "$work/run.err")" /problems/not-genus-zero
+  [ ! -e "$work/run.glb" ] || fail "there is a result all the same"
+}
+
+test_run_ends_with_1_where_the_input_cannot_be_opened() {
+  need_binary
+  run_orbis "$work/no-such-file.glb"
+  expect "the exit status" "$EXIT" 1
+}
+
+test_run_dumps_its_stages() {
+  need_binary
+  run_orbis "$models/egg.glb" --dump-stages "$work/stages"
+  expect "the exit status" "$EXIT" 0
+  compgen -G "$work/stages/*.obj" >/dev/null || fail "there is no OBJ among: $(ls "$work/stages")"
+  compgen -G "$work/stages/*.png" >/dev/null || fail "there is no PNG among: $(ls "$work/stages")"
+}
