@@ -223,6 +223,7 @@ void Decimation::drop_dead() {
 
 Hierarchy Decimation::run(Progress& progress) {
   const std::uint64_t total = vertices_.size() - 4;
+  progress.report(Stage::simplify, 0, total);
   while (vertices_.size() > 4) {
     progress.check();
     find_candidates();

@@ -119,6 +119,7 @@ bool Refinement::relax(std::uint32_t sweeps, double worthwhile, Progress& progre
 }
 
 void Refinement::refine(Progress& progress) {
+  progress.report(Stage::refine, vertices_.size(), points_.size());
   for (std::size_t round = hierarchy_.rounds(); round-- > 0;) {
     insert_round(round);
     prepare_level(round == 0 ? fine_regularisation : coarse_regularisation);
@@ -130,6 +131,7 @@ void Refinement::refine(Progress& progress) {
 }
 
 void Refinement::optimise(Progress& progress) {
+  progress.report(Stage::optimise, 0, 1);
   if (hierarchy_.rounds() == 0) prepare_level(fine_regularisation); // the input is a tetrahedron
   converged = relax(final_sweeps, final_gain, progress);
   progress.report(Stage::optimise, 1, 1);
