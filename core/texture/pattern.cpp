@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/texture/bake.h"
+#include "core/texture/color.h"
+#include "core/texture/lettering.h"
+
+namespace orbis::texture {
+namespace {
+
+struct Palette {
+  std::string_view name;
+  Rgb light, full, ink; // fields alternate between light and full; ink is for text on light fields and for lines
+};
+constexpr std::array<Palette, face_count> palettes{{
+    {"+X", {250, 220, 214}, {222, 98, 84}, {110, 28, 20}},
+    {"-X", {252, 231, 200}, {230, 150, 54}, {107, 62, 8}},
+    {"+Y", {225, 241, 206}, {116, 178, 70}, {42, 82, 16}},
+    {"-Y", {208, 240, 232}, {50, 164, 144}, {10, 74, 64}},
+    {"+Z", {212, 227, 250}, {74, 130, 212}, {20, 56, 112}},
+    {"-Z", {232, 219, 247}, {146, 100, 202}, {62, 30, 104}},
+}};
+constexpr Rgb white{255, 255, 255};
+constexpr Rgb border_color{38, 42, 52};
+
+class FacePainter {
+public:
+  FacePainter(const AtlasLayout& layout, Face face, Image& image)
+      : image_(image), side_(layout.chart()), left_(layout.chart_x(face)), top_(layout.chart_y(face)),
+        palette_(palettes[face]), fields_(side_ >= 128  ? 8
+                                          : side_ >= 48 ? 4
+                                                        : 2),
+        field_(static_cast<double>(side_) / fields_) {}
+
+  void paint() {
+    checker();
+    for (int row = 0; row < fields_; ++row)
+      for (int column = 0; column < fields_; ++column) label(column, row);
+    lines();
+  }
+
+private:
+  Image& image_;
+  std::uint32_t side_, left_, top_;
+  const Palette& palette_;
+  int fields_;   // a side
+  double field_; // texels a field
+
+  [[nodiscard]] static bool is_light(int column, int row) { return (column + row) % 2 == 0; }
+
+  void blend(std::uint32_t x, std::uint32_t y, const Rgb& color, float t) {
+    std::uint8_t* texel = image_.at(left_ + x, top_ + y);
+    const Rgb result = mixed({texel[0], texel[1], texel[2]}, color, t);
+    std::copy(result.begin(), result.end(), texel);
+  }
+
+  void checker() {
+    std::vector<int> field(side_);
+    for (std::uint32_t i = 0; i < side_; ++i) field[i] = static_cast<int>((i + 0.5) / field_);
+    for (std::uint32_t y = 0; y < side_; ++y)
+      for (std::uint32_t x = 0; x < side_; ++x) {
+        const Rgb& color = is_light(field[x], field[y]) ? palette_.light : palette_.full;
+        std::copy(color.begin(), color.end(), image_.at(left_ + x, top_ + y));
+      }
+  }
+
+  // The part of a texel that a line of this width around `centre` covers.
+  static float covered(std::uint32_t texel, double centre, double width) {
+    const double from = std::max<double>(texel, centre - width / 2);
+    const double to = std::min<double>(texel + 1.0, centre + width / 2);
+    return static_cast<float>(std::max(to - from, 0.0));
+  }
+
+  void lines() {
+    const double thin = std::max(field_ / 40, 0.75), thick = 3 * thin; // half of the border lies on the next face
+    std::vector<float> grid(side_), border(side_);
+    for (std::uint32_t i = 0; i < side_; ++i) {
+      for (int k = 1; k < fields_; ++k) grid[i] += covered(i, k * field_, thin);
+      border[i] = covered(i, 0, thick) + covered(i, side_, thick);
+    }
+    for (std::uint32_t y = 0; y < side_; ++y)
+      for (std::uint32_t x = 0; x < side_; ++x) {
+        if (const float t = std::max(grid[x], grid[y]); t > 0) blend(x, y, palette_.ink, 0.85F * std::min(t, 1.0F));
+        if (const float t = std::max(border[x], border[y]); t > 0) blend(x, y, border_color, std::min(t, 1.0F));
+      }
+  }
+
+  void label(int column, int row) {
+    const Rgb& color = is_light(column, row) ? palette_.ink : white;
+    const std::string field{static_cast<char>('A' + column), static_cast<char>('1' + row)};
+    constexpr double smallest_legible = 6;
+    const double large = 0.38 * field_, small = 0.15 * field_;
+    const double x = (column + 0.5) * field_, y = (row + 0.5) * field_;
+    if (small >= smallest_legible) {
+      text(field, large, x, y + 0.08 * field_, color);
+      text(palette_.name, small, x, y - 0.34 * field_, color);
+    } else if (large >= smallest_legible) {
+      text(field, large, x, y, color);
+    }
+  }
+
+  void text(std::string_view letters, double height, double centre_x, double centre_y, const Rgb& color) {
+    const TextMask mask = draw_text(letters, height);
+    const auto x0 = static_cast<std::uint32_t>(std::lround(std::max(centre_x - mask.width / 2.0, 0.0)));
+    const auto y0 = static_cast<std::uint32_t>(std::lround(std::max(centre_y - mask.height / 2.0, 0.0)));
+    for (std::uint32_t y = 0; y < std::min(mask.height, side_ - y0); ++y)
+      for (std::uint32_t x = 0; x < std::min(mask.width, side_ - x0); ++x)
+        if (const std::uint8_t t = mask.coverage[std::size_t{y} * mask.width + x]; t > 0)
+          blend(x0 + x, y0 + y, color, static_cast<float>(t) / 255);
+  }
+};
+
+} // namespace
+
+Image bake_pattern(const AtlasLayout& layout, Progress& progress) {
+  Image image{layout.width, layout.height, 3, {}};
+  image.pixels.resize(std::size_t{layout.width} * layout.height * image.channels);
+  for (Face f = 0; f < face_count; ++f) {
+    progress.check();
+    progress.report(Stage::bake, f, face_count);
+    FacePainter(layout, f, image).paint();
+  }
+  fill_gutters(layout, image);
+  progress.report(Stage::bake, face_count, face_count);
+  return image;
+}
+
+} // namespace orbis::texture
