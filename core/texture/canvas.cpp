@@ -1,0 +1,189 @@
+#include "core/texture/canvas.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace orbis::texture {
+namespace {
+
+constexpr std::uint32_t subpixels = 2; // in each direction
+constexpr double margin = 0.07;        // of the viewport's smaller side
+constexpr std::uint32_t mip_levels = 6;
+
+// The camera's axes: x to the right, y up, z towards the viewer, who stands in front (+Z), 30 degrees to the right and
+// 20 degrees up.
+const Vec3d view_z = normalized(Vec3d{0.50, 0.42, 0.87});
+const Vec3d view_x = normalized(cross(Vec3d{0, 1, 0}, view_z));
+const Vec3d view_y = cross(view_z, view_x);
+
+struct Projected {
+  double x = 0, y = 0;      // sub-pixels
+  double inverse_depth = 0; // 1 / distance from the eye along the view
+};
+
+// Perspective with the eye at a few radii, then moved and scaled so that the outline fits the viewport exactly.
+std::vector<Projected> project_all(std::span<const Vec3d> positions, const Viewport& view) {
+  std::vector<Projected> points;
+  points.reserve(positions.size());
+  double radius = 0;
+  Vec3d low = positions[0], high = positions[0];
+  for (const Vec3d& p : positions) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const Vec3d centre = (low + high) * 0.5;
+  for (const Vec3d& p : positions) radius = std::max(radius, norm(p - centre));
+  constexpr double eye_distance = 4.2; // radii
+  double x_low = INFINITY, x_high = -INFINITY, y_low = INFINITY, y_high = -INFINITY;
+  for (const Vec3d& p : positions) {
+    const Vec3d d = (p - centre) * (1 / radius);
+    const double inverse_depth = 1 / (eye_distance - dot(d, view_z));
+    const Projected q{dot(d, view_x) * inverse_depth, -dot(d, view_y) * inverse_depth, inverse_depth};
+    x_low = std::min(x_low, q.x);
+    x_high = std::max(x_high, q.x);
+    y_low = std::min(y_low, q.y);
+    y_high = std::max(y_high, q.y);
+    points.push_back(q);
+  }
+  const double border = margin * std::min(view.width, view.height);
+  const double scale =
+      std::min((view.width - 2 * border) / (x_high - x_low), (view.height - 2 * border) / (y_high - y_low));
+  for (Projected& q : points) {
+    q.x = subpixels * (view.x + 0.5 * view.width + scale * (q.x - 0.5 * (x_low + x_high)));
+    q.y = subpixels * (view.y + 0.5 * view.height + scale * (q.y - 0.5 * (y_low + y_high)));
+  }
+  return points;
+}
+
+// A warm key light from the upper left, a cool fill light from the right, and sky above ground.
+Light shaded(const Light& color, const Vec3d& normal) {
+  static const Vec3d key = normalized(view_x * -0.45 + view_y * 0.65 + view_z * 0.75);
+  static const Vec3d fill = normalized(view_x * 0.85 + view_y * 0.05 + view_z * 0.45);
+  constexpr std::array<double, 3> key_color{0.80, 0.78, 0.74}, fill_color{0.16, 0.18, 0.21};
+  const double lit = std::max(dot(normal, key), 0.0), filled = std::max(dot(normal, fill), 0.0);
+  const double sky = 0.26 + 0.10 * normal.y;
+  const double gloss = 0.10 * std::pow(std::max(dot(normal, normalized(key + view_z)), 0.0), 40);
+  Light result{0, 0, 0, 1};
+  for (std::size_t c = 0; c < 3; ++c)
+    result[c] = static_cast<float>(color[c] * (sky + lit * key_color[c] + filled * fill_color[c]) + gloss);
+  return result;
+}
+
+// log2 of the atlas texels along a side of a pixel, from the areas of the triangle in both.
+double mip_level_of(const std::array<RasterPoint, 3>& screen, const std::array<RasterPoint, 3>& atlas) {
+  const auto area = [](const std::array<RasterPoint, 3>& p) {
+    return std::abs((p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y));
+  };
+  const double on_screen = area(screen), in_atlas = area(atlas);
+  return on_screen > 0 && in_atlas > on_screen ? 0.5 * std::log2(in_atlas / on_screen) : 0;
+}
+
+Light between_levels(const Sampler& atlas, double x, double y, double level) {
+  const double lower = std::min(std::floor(level), mip_levels - 2.0);
+  const auto k = static_cast<std::uint32_t>(lower);
+  const auto t = static_cast<float>(std::min(level - lower, 1.0));
+  Light light = atlas.sample(x, y, k);
+  if (t == 0) return light;
+  const Light coarse = atlas.sample(x, y, k + 1);
+  for (std::size_t c = 0; c < 4; ++c) light[c] = (1 - t) * light[c] + t * coarse[c];
+  return light;
+}
+
+} // namespace
+
+std::vector<Vec3d> smooth_normals(const CutMesh& mesh, std::span<const Vec3d> positions) {
+  std::vector<Vec3d> at_point(mesh.points);
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3d area = cross(positions[b] - positions[a], positions[c] - positions[a]);
+    for (const mesh::Index v : {a, b, c}) at_point[mesh.vertices[v].point] += area;
+  }
+  std::vector<Vec3d> normals;
+  normals.reserve(mesh.vertices.size());
+  for (const CutVertex& v : mesh.vertices) {
+    const double length = norm(at_point[v.point]);
+    normals.push_back(length > 0 ? at_point[v.point] * (1 / length) : Vec3d{0, 0, 1});
+  }
+  return normals;
+}
+
+Canvas::Canvas(std::uint32_t width, std::uint32_t height)
+    : width_(subpixels * width), height_(subpixels * height), lights_(std::size_t{width_} * height_) {
+  paint_background();
+}
+
+// A studio's backdrop: light, a little darker towards the edges and the floor.
+void Canvas::paint_background() {
+  for (std::uint32_t y = 0; y < height_; ++y)
+    for (std::uint32_t x = 0; x < width_; ++x) {
+      const double u = (x + 0.5) / width_ - 0.5, v = (y + 0.5) / height_ - 0.42;
+      const auto bright = static_cast<float>(0.86 - 0.45 * (u * u + v * v) - 0.08 * v);
+      lights_[std::size_t{y} * width_ + x] = {0.985F * bright, bright, 1.02F * bright, 1};
+    }
+}
+
+void Canvas::draw(const Shape& shape, const Image& atlas, const Viewport& viewport) {
+  const std::vector<Projected> points = project_all(shape.positions, viewport);
+  std::vector<Fragment> fragments(lights_.size());
+  const auto& triangles = shape.mesh.triangles;
+  const auto on_screen = [&](std::uint32_t t) {
+    std::array<RasterPoint, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = {points[triangles[t][k]].x, points[triangles[t][k]].y};
+    return corners;
+  };
+
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    std::array<double, 3> inverse{};
+    for (std::size_t k = 0; k < 3; ++k) inverse[k] = points[triangles[t][k]].inverse_depth;
+    rasterize(on_screen(t), width_, height_,
+              [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>& weights) {
+                const double depth = weights[0] * inverse[0] + weights[1] * inverse[1] + weights[2] * inverse[2];
+                Fragment& fragment = fragments[std::size_t{y} * width_ + x];
+                if (static_cast<float>(depth) <= fragment.depth) return;
+                // Linear on the screen is linear in space after division by the depth.
+                fragment = {t, static_cast<float>(depth), static_cast<float>(weights[1] * inverse[1] / depth),
+                            static_cast<float>(weights[2] * inverse[2] / depth)};
+              });
+  }
+
+  const Sampler sampler(atlas, Wrap::clamp, Wrap::clamp, mip_levels);
+  for (std::size_t i = 0; i < fragments.size(); ++i) {
+    const Fragment& fragment = fragments[i];
+    if (fragment.triangle >= triangles.size()) continue;
+    const std::array<double, 3> weights{1.0 - fragment.b - fragment.c, fragment.b, fragment.c};
+    std::array<RasterPoint, 3> in_atlas;
+    Vec3d normal;
+    double x = 0, y = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const mesh::Index v = triangles[fragment.triangle][k];
+      const Vec2f& uv = shape.mesh.vertices[v].uv;
+      in_atlas[k] = {double{uv.x} * atlas.width, double{uv.y} * atlas.height};
+      x += weights[k] * in_atlas[k].x;
+      y += weights[k] * in_atlas[k].y;
+      normal += shape.normals[v] * weights[k];
+    }
+    // A model that is inside out still shows its surface to the viewer.
+    const double facing = dot(normal, view_z) < 0 ? -1 : 1;
+    const double length = norm(normal);
+    normal = length > 0 ? normal * (facing / length) : view_z;
+    const double level = mip_level_of(on_screen(fragment.triangle), in_atlas);
+    lights_[i] = shaded(between_levels(sampler, x, y, level), normal);
+  }
+}
+
+Image Canvas::picture() const {
+  Image image{width_ / subpixels, height_ / subpixels, 3, {}};
+  image.pixels.resize(std::size_t{image.width} * image.height * image.channels);
+  for (std::uint32_t y = 0; y < image.height; ++y)
+    for (std::uint32_t x = 0; x < image.width; ++x) {
+      Light sum{};
+      for (std::uint32_t j = 0; j < subpixels; ++j)
+        for (std::uint32_t i = 0; i < subpixels; ++i) {
+          const Light& light = lights_[(std::size_t{subpixels} * y + j) * width_ + subpixels * x + i];
+          for (std::size_t c = 0; c < 3; ++c) sum[c] += light[c] / (subpixels * subpixels);
+        }
+      store(sum, image, x, y);
+    }
+  return image;
+}
+
+} // namespace orbis::texture

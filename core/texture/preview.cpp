@@ -1,0 +1,83 @@
+#include "core/texture/preview.h"
+
+#include "core/texture/alignment.h"
+#include "core/texture/canvas.h"
+
+namespace orbis::texture {
+namespace {
+
+Shape with_normals(const CutMesh& mesh, std::vector<Vec3d> positions) {
+  std::vector<Vec3d> normals = smooth_normals(mesh, positions);
+  return {mesh, std::move(positions), std::move(normals)};
+}
+
+Shape model_shape(const mesh::TriangleMesh& surface, const CutMesh& mesh) {
+  std::vector<Vec3d> positions;
+  positions.reserve(mesh.vertices.size());
+  for (const CutVertex& v : mesh.vertices) {
+    Vec3d sum;
+    for (std::size_t k = 0; k < 3; ++k)
+      sum += Vec3d(surface.positions[surface.triangles[v.triangle][k]]) * v.barycentric[k];
+    positions.push_back(sum);
+  }
+  return with_normals(mesh, std::move(positions));
+}
+
+Shape sphere_shape(const CutMesh& mesh, const Rotation& rotation) {
+  std::vector<Vec3d> positions;
+  positions.reserve(mesh.vertices.size());
+  for (const CutVertex& v : mesh.vertices)
+    positions.push_back(rotation(normalized(Vec3d(sphere::from_grid(v.sphere)))));
+  std::vector<Vec3d> normals = positions;
+  return {mesh, std::move(positions), std::move(normals)};
+}
+
+// Turns the sphere so that each point lies, as far as it goes, on the side of the model that it belongs to.
+Rotation towards_model(const CutMesh& mesh, const Shape& model) {
+  std::vector<double> area(mesh.vertices.size());
+  Vec3d centre;
+  double total = 0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const auto& p = model.positions;
+    const double third = norm(cross(p[b] - p[a], p[c] - p[a])) / 6;
+    for (const mesh::Index v : {a, b, c}) {
+      area[v] += third;
+      centre += p[v] * third;
+      total += third;
+    }
+  }
+  centre *= total > 0 ? 1 / total : 0;
+  std::vector<Vec3d> from, to;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    from.push_back(Vec3d(sphere::from_grid(mesh.vertices[v].sphere)));
+    to.push_back(model.positions[v] - centre);
+  }
+  return best_rotation(from, to, area);
+}
+
+} // namespace
+
+Image draw_model(const mesh::TriangleMesh& surface, const CutMesh& mesh, const Image& atlas, std::uint32_t width,
+                 std::uint32_t height) {
+  Canvas canvas(width, height);
+  canvas.draw(model_shape(surface, mesh), atlas, {0, 0, width, height});
+  return canvas.picture();
+}
+
+Image draw_sphere(const CutMesh& mesh, const Image& atlas, std::uint32_t width, std::uint32_t height) {
+  Canvas canvas(width, height);
+  canvas.draw(sphere_shape(mesh, Rotation{}), atlas, {0, 0, width, height});
+  return canvas.picture();
+}
+
+Image draw_side_by_side(const mesh::TriangleMesh& surface, const CutMesh& mesh, const Image& atlas, std::uint32_t width,
+                        std::uint32_t height) {
+  Canvas canvas(width, height);
+  const Shape model = model_shape(surface, mesh);
+  const std::uint32_t left = width * 45 / 100; // the sphere needs less room than a model with limbs
+  canvas.draw(sphere_shape(mesh, towards_model(mesh, model)), atlas, {0, 0, left, height});
+  canvas.draw(model, atlas, {left, 0, width - left, height});
+  return canvas.picture();
+}
+
+} // namespace orbis::texture

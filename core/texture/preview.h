@@ -1,0 +1,24 @@
+// Pictures to look at: the textured model, and the sphere that it was unfolded onto.
+#pragma once
+
+#include <cstdint>
+
+#include "core/mesh/triangle_mesh.h"
+#include "core/texture/atlas.h"
+#include "core/texture/image.h"
+
+namespace orbis::texture {
+
+// surface: what was given to cut(); mesh: its result; atlas: of its layout. width x height pixels, 8 to 8192 each. RGB.
+// The view is from the front (+Z), a little from the right and above, with the model filling the picture.
+[[nodiscard]] Image draw_model(const mesh::TriangleMesh& surface, const CutMesh& mesh, const Image& atlas,
+                               std::uint32_t width, std::uint32_t height);
+
+// The sphere with the same atlas, from the same side.
+[[nodiscard]] Image draw_sphere(const CutMesh& mesh, const Image& atlas, std::uint32_t width, std::uint32_t height);
+
+// Left the sphere, right the model: the same texture on both is the parametrization.
+[[nodiscard]] Image draw_side_by_side(const mesh::TriangleMesh& surface, const CutMesh& mesh, const Image& atlas,
+                                      std::uint32_t width, std::uint32_t height);
+
+} // namespace orbis::texture

@@ -1,0 +1,94 @@
+#include "core/texture/sampler.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/texture/color.h"
+
+namespace orbis::texture {
+namespace {
+
+constexpr double most_taps = 4;
+
+// A coordinate into [0, size): where the wrap mode finds it. Done before the mip level divides it, so that an odd size
+// repeats where it should.
+double wrapped(double x, double size, Wrap wrap) {
+  if (!std::isfinite(x)) return 0;
+  if (wrap == Wrap::clamp) return std::clamp(x, 0.0, size);
+  const double period = wrap == Wrap::repeat ? size : 2 * size;
+  x -= period * std::floor(x / period);
+  return wrap == Wrap::mirror && x > size ? period - x : x;
+}
+
+// The texel beside the image's edge: -1 or size, else itself.
+std::uint32_t neighbour(std::int64_t i, std::uint32_t size, Wrap wrap) {
+  if (wrap == Wrap::repeat) return static_cast<std::uint32_t>((i + size) % size);
+  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(i, 0, std::int64_t{size} - 1));
+}
+
+} // namespace
+
+Light load(const Image& image, std::uint32_t x, std::uint32_t y) {
+  const std::uint8_t* p = image.at(x, y);
+  return {to_linear(p[0]), to_linear(p[1]), to_linear(p[2]),
+          image.channels == 4 ? static_cast<float>(p[3]) / 255 : 1.0F};
+}
+
+void store(const Light& light, Image& image, std::uint32_t x, std::uint32_t y) {
+  std::uint8_t* p = image.at(x, y);
+  for (std::size_t c = 0; c < 3; ++c) p[c] = to_srgb(light[c]);
+  if (image.channels == 4) p[3] = to_byte(light[3]);
+}
+
+Image halved(const Image& image) {
+  Image half{(image.width + 1) / 2, (image.height + 1) / 2, image.channels, {}};
+  half.pixels.resize(std::size_t{half.width} * half.height * half.channels);
+  for (std::uint32_t y = 0; y < half.height; ++y)
+    for (std::uint32_t x = 0; x < half.width; ++x) {
+      const std::uint32_t x1 = std::min(2 * x + 1, image.width - 1), y1 = std::min(2 * y + 1, image.height - 1);
+      Light sum{};
+      for (const Light& light :
+           {load(image, 2 * x, 2 * y), load(image, x1, 2 * y), load(image, 2 * x, y1), load(image, x1, y1)})
+        for (std::size_t c = 0; c < 4; ++c) sum[c] += 0.25F * light[c];
+      store(sum, half, x, y);
+    }
+  return half;
+}
+
+Footprint footprint_of(double texels) {
+  Footprint footprint;
+  while (texels > most_taps && footprint.level < 31) {
+    texels /= 2;
+    ++footprint.level;
+  }
+  footprint.taps = static_cast<std::uint32_t>(std::max(std::ceil(texels - 1e-3), 1.0));
+  return footprint;
+}
+
+Sampler::Sampler(const Image& image, Wrap wrap_u, Wrap wrap_v, std::uint32_t levels)
+    : image_(&image), wrap_u_(wrap_u), wrap_v_(wrap_v) {
+  const Image* last = &image;
+  mips_.reserve(32);
+  for (std::uint32_t level = 1; level < levels && (last->width > 1 || last->height > 1); ++level)
+    last = &mips_.emplace_back(halved(*last));
+}
+
+Light Sampler::sample(double x, double y, std::uint32_t level) const {
+  level = std::min(level, static_cast<std::uint32_t>(mips_.size()));
+  const Image& image = level == 0 ? *image_ : mips_[level - 1];
+  const double scale = std::ldexp(1.0, -static_cast<int>(level));
+  const double column = scale * wrapped(x, image_->width, wrap_u_) - 0.5;
+  const double row = scale * wrapped(y, image_->height, wrap_v_) - 0.5;
+  const double left = std::floor(column), top = std::floor(row);
+  const auto s = static_cast<float>(column - left), t = static_cast<float>(row - top);
+  const auto i = static_cast<std::int64_t>(left), j = static_cast<std::int64_t>(top);
+  const std::uint32_t x0 = neighbour(i, image.width, wrap_u_), x1 = neighbour(i + 1, image.width, wrap_u_);
+  const std::uint32_t y0 = neighbour(j, image.height, wrap_v_), y1 = neighbour(j + 1, image.height, wrap_v_);
+  const Light a = load(image, x0, y0), b = load(image, x1, y0), c = load(image, x0, y1), d = load(image, x1, y1);
+  Light result{};
+  for (std::size_t k = 0; k < 4; ++k)
+    result[k] = (1 - t) * ((1 - s) * a[k] + s * b[k]) + t * ((1 - s) * c[k] + s * d[k]);
+  return result;
+}
+
+} // namespace orbis::texture

@@ -1,0 +1,42 @@
+// Reading an image between its texels: bilinear, in linear light, on mip levels.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/texture/bake.h"
+#include "core/texture/image.h"
+
+namespace orbis::texture {
+
+using Light = std::array<float, 4>; // linear RGB, straight alpha
+
+[[nodiscard]] Light load(const Image& image, std::uint32_t x, std::uint32_t y);
+void store(const Light& light, Image& image, std::uint32_t x, std::uint32_t y);
+
+// Half as large in both directions (rounded up): each texel the mean of four in linear light.
+[[nodiscard]] Image halved(const Image& image);
+
+// How a footprint of `texels` source texels across is averaged: on mip level `level` by `taps` reads in each direction.
+struct Footprint {
+  std::uint32_t level = 0, taps = 1;
+};
+[[nodiscard]] Footprint footprint_of(double texels);
+
+class Sampler {
+public:
+  // Keeps a reference to the image. levels: how many mip levels may be read (1: the image itself), as far as there
+  // are any.
+  Sampler(const Image& image, Wrap wrap_u, Wrap wrap_v, std::uint32_t levels);
+
+  // x, y: in texels of the image itself (level 0), from its top left corner; any number, not finite counts as 0.
+  [[nodiscard]] Light sample(double x, double y, std::uint32_t level) const;
+
+private:
+  const Image* image_;
+  Wrap wrap_u_, wrap_v_;
+  std::vector<Image> mips_; // levels 1, 2, …
+};
+
+} // namespace orbis::texture
