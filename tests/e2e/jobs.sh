@@ -27,9 +27,9 @@ test_the_list_can_be_narrowed_to_a_state() {
 
 test_a_running_job_is_canceled_and_its_place_is_free_again() {
   start_service cancel --workers 1
-  submit "$models/egg-327680.glb" --header 'Idempotency-Key: to-be-canceled'
+  submit "$models/egg-327680.glb"
   local long=$JOB
-  until [ "$(get "$long"; json .state)" = running ]; do sleep 0.02; done
+  await_state "$long" running
   request DELETE "$long"
   expect "the status" "$STATUS" 200
   await "$long"

@@ -159,6 +159,18 @@ await() {
   fail "the job does not end"
 }
 
+# await_state JOB REGEX: waits until the job's state matches.
+await_state() {
+  local patience
+  for ((patience = 0; patience < 1000; ++patience)); do
+    get "$1"
+    STATE=$(json .state)
+    [[ $STATE =~ ^($2)$ ]] && return
+    sleep 0.1
+  done
+  fail "the job is $STATE and does not become $2"
+}
+
 # outcome: of the POST just made, leaves what the caller gets in the end in STATUS and $BODY: the GLB or a problem.
 outcome() {
   [ "$STATUS" = 202 ] || return 0

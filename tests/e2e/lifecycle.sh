@@ -24,12 +24,16 @@ test_jobs_and_results_survive_a_restart() {
 }
 
 test_sigterm_drains_what_runs_finishes_and_new_jobs_get_503() {
-  start_service drain --workers 1
+  start_service drain --workers 1 --drain 120
   submit "$models/egg-81920.glb"
-  local running=$JOB
-  until [ "$(get "$running"; json .state)" != queued ]; do sleep 0.02; done
+  local running=$JOB i
+  await_state "$running" 'running|succeeded'
   signal_service TERM
-  until [ "$(get /readyz; echo "$STATUS")" != 200 ]; do sleep 0.02; done
+  for ((i = 0; i < 100; ++i)); do
+    get /readyz
+    [ "$STATUS" = 200 ] || break
+    sleep 0.05
+  done
   # It may have ended already where the machine is fast; while it answers, it refuses.
   post "$models/tetrahedron.glb"
   if [[ $STATUS != no* ]]; then
@@ -74,10 +78,42 @@ test_a_job_above_its_time_limit_fails_alone() {
 }
 
 test_a_job_above_its_memory_limit_fails_alone() {
-  start_service narrow --workers 1 --job-memory-mb 128
+  start_service narrow --workers 1 --job-memory 200M
   post "$models/egg-327680.glb"
   outcome
   expect_problem 422 out-of-memory
   textured after-narrow "$models/tetrahedron.glb"
   stop_service
+}
+
+test_results_expire_and_give_410() {
+  start_service expiry --ttl 1
+  submit "$models/tetrahedron.glb"
+  await "$JOB"
+  await_state "$JOB" expired
+  get "$JOB/result"
+  expect_problem 410 expired
+  stop_service
+}
+
+test_with_keys_set_a_request_without_one_is_a_401_and_with_a_wrong_one_a_403() {
+  start_service keys --keys open-sesame,second-key
+  post "$models/tetrahedron.glb"
+  expect_problem 401 unauthorized
+  expect "WWW-Authenticate" "$(header www-authenticate)" Bearer
+  post "$models/tetrahedron.glb" --header 'Authorization: Bearer open-barley'
+  expect_problem 403 forbidden
+  post "$models/tetrahedron.glb" --header 'Authorization: Bearer second-key'
+  accepted
+  get /livez
+  expect "the probe needs no key" "$STATUS" 200
+  stop_service
+}
+
+test_an_unknown_setting_is_refused_at_the_start() {
+  [ -z "${ORBIS_IMAGE:-}" ] || skip "the image is tested through its service"
+  EXIT=0
+  "$orbis" serve --no-such-setting 1 >/dev/null 2>"$work/start.err" || EXIT=$?
+  expect_match "the exit status" "$EXIT" '^[12]$'
+  grep -q no-such-setting "$work/start.err" || fail "the message does not name it: $(cat "$work/start.err")"
 }
