@@ -1,0 +1,80 @@
+#include "core/pipeline.h"
+
+#include <sys/resource.h>
+
+#include "core/asset/asset.h"
+#include "core/asset/image_codec.h"
+#include "core/sphere/distortion.h"
+#include "core/steps/delivery.h"
+#include "core/steps/dump.h"
+#include "core/steps/paint.h"
+#include "core/steps/stage_clock.h"
+#include "core/steps/summary.h"
+#include "core/steps/surface.h"
+#include "core/steps/unfold_and_cut.h"
+#include "core/texture/atlas.h"
+
+namespace orbis {
+namespace {
+
+std::uint64_t peak_rss_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::vector<Vec3f> deliverable(std::span<const sphere::GridPoint> points) {
+  std::vector<Vec3f> out;
+  out.reserve(points.size());
+  for (const sphere::GridPoint& p : points) out.push_back(sphere::from_grid(p));
+  return out;
+}
+
+} // namespace
+
+Result process(const Request& request, const Limits& limits, Progress& caller, const StageDump& dump) {
+  StageClock progress(caller);
+  Result result;
+  Report& report = result.report;
+  report.options = request.options;
+
+  progress.report(Stage::decode, 0, 1);
+  const asset::Asset asset = asset::read_asset(request.model, request.files, limits);
+  describe_input(asset, report);
+
+  progress.report(Stage::topology, 0, 1);
+  const Surface surface = make_surface(asset, report);
+  dump_mesh(dump, "1-surface.obj", surface.mesh.positions, surface.mesh.triangles);
+
+  const std::vector<Vec3d> points = embed(surface, request.options, progress, report);
+
+  const texture::AtlasLayout layout = texture::layout_for(request.options.texture_size);
+  progress.report(Stage::atlas, 0, 1);
+  const CutSphere sphere = snap_and_cut(surface, points, layout, progress, report);
+  const std::vector<Vec3f> delivered = deliverable(sphere.points);
+  report.distortion = sphere::measure_distortion(surface.mesh, delivered);
+  const Delivery delivery = make_delivery(asset, surface, sphere.cut);
+  dump_mesh(dump, "2-sphere.obj", delivered, surface.mesh.triangles);
+  dump_charts(dump, "3-charts.obj", sphere.cut, layout);
+
+  progress.report(Stage::bake, 0, 1);
+  const texture::Image atlas = paint(request, limits, asset, surface, sphere.cut, delivery, layout, progress, report);
+  result.preview_png = preview(surface, sphere.cut, atlas);
+
+  progress.report(Stage::encode, 0, 1);
+  result.atlas_png = asset::encode_png(atlas);
+  dump_bytes(dump, "4-atlas.png", result.atlas_png);
+  dump_bytes(dump, "5-preview.png", result.preview_png);
+  result.glb = asset::write_asset(asset, delivery.primitives, encode_atlas(atlas, result.atlas_png, request.options),
+                                  extras_of(report), request.options.compression);
+
+  progress.report(Stage::certify, 0, 1);
+  certify_file(result.glb, asset, surface, delivery, report);
+  progress.report(Stage::certify, 1, 1);
+
+  report.stages = progress.times();
+  report.peak_rss_bytes = peak_rss_bytes();
+  return result;
+}
+
+} // namespace orbis

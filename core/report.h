@@ -14,7 +14,7 @@
 namespace orbis {
 
 struct StageTime {
-  Stage stage;
+  Stage stage = Stage::decode;
   double wall_ms = 0, cpu_ms = 0;
 };
 

@@ -1,0 +1,95 @@
+#include "core/steps/delivery.h"
+
+#include <string>
+
+namespace orbis {
+namespace {
+
+using asset::Attribute;
+using asset::ComponentType;
+
+std::uint32_t first_free_texcoord(const asset::Primitive& primitive) {
+  std::uint32_t n = 0;
+  while (primitive.find("TEXCOORD_" + std::to_string(n)) != nullptr) ++n;
+  return n;
+}
+
+Attribute float_attribute(std::string name, std::uint32_t components, std::size_t count) {
+  Attribute out{std::move(name), ComponentType::f32, false, components, {}};
+  out.data.resize(count * components * sizeof(float));
+  return out;
+}
+
+// Numbers the cut vertices within their primitives, in the order of the triangles that use them.
+class Numbering {
+public:
+  Numbering(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut)
+      : surface_(surface), cut_(cut), seen_(cut.vertices.size(), false) {
+    out_.primitives.resize(asset.primitives.size());
+    out_.sources.resize(asset.primitives.size());
+    out_.of_cut_vertex.resize(cut.vertices.size());
+    out_.of_surface_vertex.resize(surface.mesh.positions.size());
+  }
+
+  Delivery run() {
+    for (std::size_t t = 0; t < cut_.triangles.size(); ++t) {
+      const std::uint32_t primitive = surface_.primitive_of[cut_.parent[t]];
+      for (const mesh::Index v : cut_.triangles[t]) {
+        if (!seen_[v]) add(v, primitive);
+        out_.primitives[primitive].indices.push_back(out_.of_cut_vertex[v].vertex);
+      }
+    }
+    return std::move(out_);
+  }
+
+private:
+  void add(mesh::Index v, std::uint32_t primitive) {
+    seen_[v] = true;
+    const texture::CutVertex& vertex = cut_.vertices[v];
+    const mesh::Triangle& corners = surface_.corners[vertex.triangle];
+    const std::uint32_t first = surface_.first_vertex[primitive];
+    std::vector<VertexSource>& sources = out_.sources[primitive];
+    out_.of_cut_vertex[v] = {primitive, static_cast<std::uint32_t>(sources.size())};
+    if (vertex.point < out_.of_surface_vertex.size()) out_.of_surface_vertex[vertex.point] = out_.of_cut_vertex[v];
+    sources.push_back({{corners[0] - first, corners[1] - first, corners[2] - first}, vertex.barycentric});
+  }
+
+  const Surface& surface_;
+  const texture::CutMesh& cut_;
+  std::vector<bool> seen_;
+  Delivery out_;
+};
+
+} // namespace
+
+Delivery make_delivery(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut) {
+  Delivery out = Numbering(asset, surface, cut).run();
+  std::vector<Attribute> uv, sphere;
+  for (std::size_t p = 0; p < out.primitives.size(); ++p) {
+    const asset::Primitive& input = asset.primitives[p];
+    asset::NewPrimitive& primitive = out.primitives[p];
+    const std::size_t count = out.sources[p].size();
+    primitive.attributes = interpolate(input.attributes, out.sources[p]);
+    for (const auto& target : input.targets) primitive.targets.push_back(interpolate_target(target, out.sources[p]));
+    primitive.atlas_texcoord = first_free_texcoord(input);
+    uv.push_back(float_attribute("TEXCOORD_" + std::to_string(primitive.atlas_texcoord), 2, count));
+    sphere.push_back(float_attribute("_SPHERE", 3, count));
+  }
+  for (std::size_t v = 0; v < cut.vertices.size(); ++v) {
+    const OutputVertex o = out.of_cut_vertex[v];
+    const Vec3f s = sphere::from_grid(cut.vertices[v].sphere);
+    uv[o.primitive].set(o.vertex, 0, double{cut.vertices[v].uv.x});
+    uv[o.primitive].set(o.vertex, 1, double{cut.vertices[v].uv.y});
+    sphere[o.primitive].set(o.vertex, 0, double{s.x});
+    sphere[o.primitive].set(o.vertex, 1, double{s.y});
+    sphere[o.primitive].set(o.vertex, 2, double{s.z});
+  }
+  for (std::size_t p = 0; p < out.primitives.size(); ++p) {
+    std::erase_if(out.primitives[p].attributes, [](const Attribute& a) { return a.name == "_SPHERE"; });
+    out.primitives[p].attributes.push_back(std::move(uv[p]));
+    out.primitives[p].attributes.push_back(std::move(sphere[p]));
+  }
+  return out;
+}
+
+} // namespace orbis

@@ -1,0 +1,40 @@
+#include "core/steps/summary.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/version.h"
+
+namespace orbis {
+
+void describe_input(const asset::Asset& asset, Report& report) {
+  constexpr std::array<std::string_view, 3> formats{"glb", "gltf", "draco"};
+  report.format = formats.at(static_cast<std::size_t>(asset.format));
+  for (const auto& note : asset.notes) report.notes.push_back({note.code, note.message, note.where});
+}
+
+std::string extras_of(const Report& report) {
+  nlohmann::ordered_json options;
+  for (const OptionInfo& info : option_table()) {
+    // The number of threads changes nothing in the result.
+    if (info.name != "threads") options[std::string(info.name)] = get_option(report.options, info.name);
+  }
+  // The certificate is made on the finished file, so the file states what is certified; a file that fails is not
+  // delivered.
+  const nlohmann::ordered_json extras{
+      {"version", version},
+      {"options", options},
+      {"certificate",
+       {{"statement",
+         "closed, connected, Euler characteristic 2; every triangle of _SPHERE positively oriented, decided "
+         "exactly; degree 1: the map is a homeomorphism onto the sphere"},
+        {"vertices", report.topology.vertices},
+        {"triangles", report.topology.triangles},
+        {"grid", "multiples of 2^-24"}}},
+      {"distortion",
+       {{"symmetric_dirichlet", report.distortion.symmetric_dirichlet},
+        {"l2_stretch", report.distortion.l2_stretch},
+        {"quasi_conformal_mean", report.distortion.quasi_conformal_mean}}}};
+  return extras.dump();
+}
+
+} // namespace orbis
