@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/texture/raster.h"
 
 namespace orbis::texture {
 namespace {
@@ -16,43 +20,88 @@ const Vec3d view_z = normalized(Vec3d{0.50, 0.42, 0.87});
 const Vec3d view_x = normalized(cross(Vec3d{0, 1, 0}, view_z));
 const Vec3d view_y = cross(view_z, view_x);
 
+constexpr double eye_distance = 4.2; // radii of the bounding sphere
+
 struct Projected {
-  double x = 0, y = 0;      // sub-pixels
+  double x = 0, y = 0;      // on the image plane, y down
   double inverse_depth = 0; // 1 / distance from the eye along the view
 };
 
-// Perspective with the eye at a few radii, then moved and scaled so that the outline fits the viewport exactly.
-std::vector<Projected> project_all(std::span<const Vec3d> positions, const Viewport& view) {
+struct Projection {
   std::vector<Projected> points;
-  points.reserve(positions.size());
-  double radius = 0;
+  double x_low = INFINITY, x_high = -INFINITY, y_low = INFINITY, y_high = -INFINITY;
+
+  void add(const Projected& p) {
+    x_low = std::min(x_low, p.x);
+    x_high = std::max(x_high, p.x);
+    y_low = std::min(y_low, p.y);
+    y_high = std::max(y_high, p.y);
+    points.push_back(p);
+  }
+};
+
+// Perspective with the eye at a few radii.
+Projection project_all(std::span<const Vec3d> positions) {
   Vec3d low = positions[0], high = positions[0];
   for (const Vec3d& p : positions) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
   const Vec3d centre = (low + high) * 0.5;
+  double radius = 0;
   for (const Vec3d& p : positions) radius = std::max(radius, norm(p - centre));
-  constexpr double eye_distance = 4.2; // radii
-  double x_low = INFINITY, x_high = -INFINITY, y_low = INFINITY, y_high = -INFINITY;
+  Projection projection;
+  projection.points.reserve(positions.size());
   for (const Vec3d& p : positions) {
     const Vec3d d = (p - centre) * (1 / radius);
     const double inverse_depth = 1 / (eye_distance - dot(d, view_z));
-    const Projected q{dot(d, view_x) * inverse_depth, -dot(d, view_y) * inverse_depth, inverse_depth};
-    x_low = std::min(x_low, q.x);
-    x_high = std::max(x_high, q.x);
-    y_low = std::min(y_low, q.y);
-    y_high = std::max(y_high, q.y);
-    points.push_back(q);
+    projection.add({dot(d, view_x) * inverse_depth, -dot(d, view_y) * inverse_depth, inverse_depth});
   }
+  return projection;
+}
+
+// Moves and scales the outline so that it fits the viewport, in sub-pixels.
+std::vector<Projected> fitted(Projection projection, const Viewport& view) {
   const double border = margin * std::min(view.width, view.height);
-  const double scale =
-      std::min((view.width - 2 * border) / (x_high - x_low), (view.height - 2 * border) / (y_high - y_low));
-  for (Projected& q : points) {
-    q.x = subpixels * (view.x + 0.5 * view.width + scale * (q.x - 0.5 * (x_low + x_high)));
-    q.y = subpixels * (view.y + 0.5 * view.height + scale * (q.y - 0.5 * (y_low + y_high)));
+  const double scale = std::min((view.width - 2 * border) / (projection.x_high - projection.x_low),
+                                (view.height - 2 * border) / (projection.y_high - projection.y_low));
+  for (Projected& p : projection.points) {
+    p.x = subpixels * (view.x + 0.5 * view.width + scale * (p.x - 0.5 * (projection.x_low + projection.x_high)));
+    p.y = subpixels * (view.y + 0.5 * view.height + scale * (p.y - 0.5 * (projection.y_low + projection.y_high)));
   }
-  return points;
+  return std::move(projection.points);
+}
+
+// The triangle that is seen at a sub-pixel.
+struct Fragment {
+  std::uint32_t triangle = std::numeric_limits<std::uint32_t>::max();
+  float inverse_depth = 0;
+  float b = 0, c = 0; // weights of its second and third corner, in space
+};
+
+std::array<RasterPoint, 3> corners_of(const mesh::Triangle& triangle, std::span<const Projected> points) {
+  std::array<RasterPoint, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k) corners[k] = {points[triangle[k]].x, points[triangle[k]].y};
+  return corners;
+}
+
+std::vector<Fragment> visible(std::span<const mesh::Triangle> triangles, std::span<const Projected> points,
+                              std::uint32_t width, std::uint32_t height) {
+  std::vector<Fragment> fragments(std::size_t{width} * height);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    std::array<double, 3> inverse{};
+    for (std::size_t k = 0; k < 3; ++k) inverse[k] = points[triangles[t][k]].inverse_depth;
+    rasterize(corners_of(triangles[t], points), width, height,
+              [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>& weights) {
+                const double depth = weights[0] * inverse[0] + weights[1] * inverse[1] + weights[2] * inverse[2];
+                Fragment& fragment = fragments[std::size_t{y} * width + x];
+                if (static_cast<float>(depth) <= fragment.inverse_depth) return;
+                // What is linear in space is linear on the screen after division by the depth.
+                fragment = {t, static_cast<float>(depth), static_cast<float>(weights[1] * inverse[1] / depth),
+                            static_cast<float>(weights[2] * inverse[2] / depth)};
+              });
+  }
+  return fragments;
 }
 
 // A warm key light from the upper left, a cool fill light from the right, and sky above ground.
@@ -62,7 +111,8 @@ Light shaded(const Light& color, const Vec3d& normal) {
   constexpr std::array<double, 3> key_color{0.80, 0.78, 0.74}, fill_color{0.16, 0.18, 0.21};
   const double lit = std::max(dot(normal, key), 0.0), filled = std::max(dot(normal, fill), 0.0);
   const double sky = 0.26 + 0.10 * normal.y;
-  const double gloss = 0.10 * std::pow(std::max(dot(normal, normalized(key + view_z)), 0.0), 40);
+  static const Vec3d halfway = normalized(key + view_z);
+  const double gloss = 0.10 * std::pow(std::max(dot(normal, halfway), 0.0), 40);
   Light result{0, 0, 0, 1};
   for (std::size_t c = 0; c < 3; ++c)
     result[c] = static_cast<float>(color[c] * (sky + lit * key_color[c] + filled * fill_color[c]) + gloss);
@@ -122,52 +172,65 @@ void Canvas::paint_background() {
 }
 
 void Canvas::draw(const Shape& shape, const Image& atlas, const Viewport& viewport) {
-  const std::vector<Projected> points = project_all(shape.positions, viewport);
-  std::vector<Fragment> fragments(lights_.size());
+  const std::vector<Projected> points = fitted(project_all(shape.positions), viewport);
   const auto& triangles = shape.mesh.triangles;
-  const auto on_screen = [&](std::uint32_t t) {
-    std::array<RasterPoint, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = {points[triangles[t][k]].x, points[triangles[t][k]].y};
-    return corners;
-  };
-
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    std::array<double, 3> inverse{};
-    for (std::size_t k = 0; k < 3; ++k) inverse[k] = points[triangles[t][k]].inverse_depth;
-    rasterize(on_screen(t), width_, height_,
-              [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>& weights) {
-                const double depth = weights[0] * inverse[0] + weights[1] * inverse[1] + weights[2] * inverse[2];
-                Fragment& fragment = fragments[std::size_t{y} * width_ + x];
-                if (static_cast<float>(depth) <= fragment.depth) return;
-                // Linear on the screen is linear in space after division by the depth.
-                fragment = {t, static_cast<float>(depth), static_cast<float>(weights[1] * inverse[1] / depth),
-                            static_cast<float>(weights[2] * inverse[2] / depth)};
-              });
-  }
-
+  const std::vector<Fragment> fragments = visible(triangles, points, width_, height_);
   const Sampler sampler(atlas, Wrap::clamp, Wrap::clamp, mip_levels);
   for (std::size_t i = 0; i < fragments.size(); ++i) {
     const Fragment& fragment = fragments[i];
-    if (fragment.triangle >= triangles.size()) continue;
+    if (fragment.inverse_depth == 0) continue;
+    const mesh::Triangle& triangle = triangles[fragment.triangle];
     const std::array<double, 3> weights{1.0 - fragment.b - fragment.c, fragment.b, fragment.c};
     std::array<RasterPoint, 3> in_atlas;
+    RasterPoint at;
     Vec3d normal;
-    double x = 0, y = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const mesh::Index v = triangles[fragment.triangle][k];
-      const Vec2f& uv = shape.mesh.vertices[v].uv;
+      const Vec2f& uv = shape.mesh.vertices[triangle[k]].uv;
       in_atlas[k] = {double{uv.x} * atlas.width, double{uv.y} * atlas.height};
-      x += weights[k] * in_atlas[k].x;
-      y += weights[k] * in_atlas[k].y;
-      normal += shape.normals[v] * weights[k];
+      at.x += weights[k] * in_atlas[k].x;
+      at.y += weights[k] * in_atlas[k].y;
+      normal += shape.normals[triangle[k]] * weights[k];
     }
     // A model that is inside out still shows its surface to the viewer.
     const double facing = dot(normal, view_z) < 0 ? -1 : 1;
     const double length = norm(normal);
     normal = length > 0 ? normal * (facing / length) : view_z;
-    const double level = mip_level_of(on_screen(fragment.triangle), in_atlas);
-    lights_[i] = shaded(between_levels(sampler, x, y, level), normal);
+    const double level = mip_level_of(corners_of(triangle, points), in_atlas);
+    lights_[i] = shaded(between_levels(sampler, at.x, at.y, level), normal);
   }
+}
+
+void Canvas::draw_sphere(const Rotation& rotation, const Image& atlas, const Viewport& viewport) {
+  const AtlasLayout layout = layout_for(atlas.width);
+  const Sampler sampler(atlas, Wrap::clamp, Wrap::clamp, mip_levels);
+  const double radius = subpixels * (0.5 - margin) * std::min(viewport.width, viewport.height);
+  const double centre_x = subpixels * (viewport.x + 0.5 * viewport.width);
+  const double centre_y = subpixels * (viewport.y + 0.5 * viewport.height);
+  const double distance = eye_distance;
+  // On the image plane one unit before the eye the sphere is a disc of this radius.
+  const double disc = 1 / std::sqrt(distance * distance - 1);
+  const double finest = std::max(0.5 * layout.chart() / radius, 1.0);
+  for (std::uint32_t y = subpixels * viewport.y; y < subpixels * (viewport.y + viewport.height); ++y)
+    for (std::uint32_t x = subpixels * viewport.x; x < subpixels * (viewport.x + viewport.width); ++x) {
+      // The ray eye + s d, d = (u, v, -1), meets the sphere where s^2 |d|^2 - 2 s distance + distance^2 - 1 = 0.
+      const double u = disc * (x + 0.5 - centre_x) / radius, v = -disc * (y + 0.5 - centre_y) / radius;
+      const double square = u * u + v * v + 1;
+      const double discriminant = distance * distance - square * (distance * distance - 1);
+      if (discriminant <= 0) continue;
+      const double s = (distance - std::sqrt(discriminant)) / square;
+      const Vec3d normal = view_x * (s * u) + view_y * (s * v) + view_z * (distance - s);
+      const Vec3d d = rotation.inverse(normal);
+      const Face f = face_of(d);
+      const auto [atlas_x, atlas_y] = layout.texel_of(f, project(d, f));
+      const double slant = std::max(dot(normal, view_z), 0.25);
+      const double level = 0.5 * std::log2(finest * finest / slant);
+      lights_[std::size_t{y} * width_ + x] = shaded(between_levels(sampler, atlas_x, atlas_y, level), normal);
+    }
+}
+
+double aspect_of(const Shape& shape) {
+  const Projection projection = project_all(shape.positions);
+  return (projection.x_high - projection.x_low) / (projection.y_high - projection.y_low);
 }
 
 Image Canvas::picture() const {

@@ -2,13 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
+#include "core/texture/alignment.h"
 #include "core/texture/atlas.h"
 #include "core/texture/image.h"
-#include "core/texture/raster.h"
 #include "core/texture/sampler.h"
 #include "core/vec3.h"
 
@@ -35,19 +34,19 @@ public:
   // Draws the shape so that it fills the viewport but for a margin. The shape keeps its own depth: viewports must not
   // overlap.
   void draw(const Shape& shape, const Image& atlas, const Viewport& viewport);
+  // The unit sphere as such, without any mesh: each point shows the atlas at its direction, turned back by `rotation`.
+  void draw_sphere(const Rotation& rotation, const Image& atlas, const Viewport& viewport);
   // Averages the sub-pixels. RGB.
   [[nodiscard]] Image picture() const;
 
 private:
-  struct Fragment {
-    std::uint32_t triangle = std::numeric_limits<std::uint32_t>::max();
-    float depth = -std::numeric_limits<float>::infinity(); // 1 / distance: larger is nearer
-    float b = 0, c = 0;                                    // weights of the second and third corner in space
-  };
   std::uint32_t width_, height_; // sub-pixels
   std::vector<Light> lights_;    // one per sub-pixel
 
   void paint_background();
 };
+
+// Width / height of a shape as draw() shows it.
+[[nodiscard]] double aspect_of(const Shape& shape);
 
 } // namespace orbis::texture

@@ -2,16 +2,36 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace orbis::texture {
 
+struct SrgbTables {
+  // sRGB is steepest at black: 12.92 * 255 = 3295 bytes per unit of light, about 20 steps of the table to a byte.
+  static constexpr std::size_t steps = 1U << 16U;
+  std::array<float, 256> linear{};
+  std::array<std::uint8_t, steps + 1> srgb{};
+
+  SrgbTables();
+};
+extern const SrgbTables srgb_tables;
+
 // [0, 1]; exact to float precision.
-[[nodiscard]] float to_linear(std::uint8_t srgb);
+[[nodiscard]] inline float to_linear(std::uint8_t srgb) { return srgb_tables.linear[srgb]; }
+
 // The nearest byte; values outside [0, 1] are clamped, NaN gives 0. to_srgb(to_linear(b)) == b.
-[[nodiscard]] std::uint8_t to_srgb(float linear);
-// Alpha is linear already.
-[[nodiscard]] std::uint8_t to_byte(float value);
+[[nodiscard]] inline std::uint8_t to_srgb(float linear) {
+  if (!(linear > 0)) return 0;
+  if (linear >= 1) return 255;
+  return srgb_tables.srgb[static_cast<std::size_t>(linear * static_cast<float>(SrgbTables::steps) + 0.5F)];
+}
+
+// The nearest byte of what is linear already, as alpha.
+[[nodiscard]] inline std::uint8_t to_byte(float value) {
+  if (!(value > 0)) return 0;
+  return value >= 1 ? 255 : static_cast<std::uint8_t>(value * 255 + 0.5F);
+}
 
 using Rgb = std::array<std::uint8_t, 3>;
 // a where t = 0, b where t = 1, mixed in linear light.

@@ -1,15 +1,13 @@
 #include "core/texture/preview.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "core/texture/alignment.h"
 #include "core/texture/canvas.h"
 
 namespace orbis::texture {
 namespace {
-
-Shape with_normals(const CutMesh& mesh, std::vector<Vec3d> positions) {
-  std::vector<Vec3d> normals = smooth_normals(mesh, positions);
-  return {mesh, std::move(positions), std::move(normals)};
-}
 
 Shape model_shape(const mesh::TriangleMesh& surface, const CutMesh& mesh) {
   std::vector<Vec3d> positions;
@@ -20,15 +18,7 @@ Shape model_shape(const mesh::TriangleMesh& surface, const CutMesh& mesh) {
       sum += Vec3d(surface.positions[surface.triangles[v.triangle][k]]) * v.barycentric[k];
     positions.push_back(sum);
   }
-  return with_normals(mesh, std::move(positions));
-}
-
-Shape sphere_shape(const CutMesh& mesh, const Rotation& rotation) {
-  std::vector<Vec3d> positions;
-  positions.reserve(mesh.vertices.size());
-  for (const CutVertex& v : mesh.vertices)
-    positions.push_back(rotation(normalized(Vec3d(sphere::from_grid(v.sphere)))));
-  std::vector<Vec3d> normals = positions;
+  std::vector<Vec3d> normals = smooth_normals(mesh, positions);
   return {mesh, std::move(positions), std::move(normals)};
 }
 
@@ -64,9 +54,9 @@ Image draw_model(const mesh::TriangleMesh& surface, const CutMesh& mesh, const I
   return canvas.picture();
 }
 
-Image draw_sphere(const CutMesh& mesh, const Image& atlas, std::uint32_t width, std::uint32_t height) {
+Image draw_sphere(const Image& atlas, std::uint32_t width, std::uint32_t height) {
   Canvas canvas(width, height);
-  canvas.draw(sphere_shape(mesh, Rotation{}), atlas, {0, 0, width, height});
+  canvas.draw_sphere(Rotation{}, atlas, {0, 0, width, height});
   return canvas.picture();
 }
 
@@ -74,9 +64,13 @@ Image draw_side_by_side(const mesh::TriangleMesh& surface, const CutMesh& mesh, 
                         std::uint32_t height) {
   Canvas canvas(width, height);
   const Shape model = model_shape(surface, mesh);
-  const std::uint32_t left = width * 45 / 100; // the sphere needs less room than a model with limbs
-  canvas.draw(sphere_shape(mesh, towards_model(mesh, model)), atlas, {0, 0, left, height});
-  canvas.draw(model, atlas, {left, 0, width - left, height});
+  // The model gets the width that it needs at full height, the sphere a square, and what is left over goes around them.
+  const double wanted = std::clamp(aspect_of(model), 0.6, 2.0);
+  const double side = std::min<double>(height, width / (1 + wanted));
+  const auto left = static_cast<std::uint32_t>(side), right = static_cast<std::uint32_t>(wanted * side);
+  const std::uint32_t gap = (width - left - right) / 3;
+  canvas.draw_sphere(towards_model(mesh, model), atlas, {gap, 0, left, height});
+  canvas.draw(model, atlas, {2 * gap + left, 0, right, height});
   return canvas.picture();
 }
 

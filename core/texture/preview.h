@@ -14,10 +14,11 @@ namespace orbis::texture {
 [[nodiscard]] Image draw_model(const mesh::TriangleMesh& surface, const CutMesh& mesh, const Image& atlas,
                                std::uint32_t width, std::uint32_t height);
 
-// The sphere with the same atlas, from the same side.
-[[nodiscard]] Image draw_sphere(const CutMesh& mesh, const Image& atlas, std::uint32_t width, std::uint32_t height);
+// The sphere with the atlas, from the same side.
+[[nodiscard]] Image draw_sphere(const Image& atlas, std::uint32_t width, std::uint32_t height);
 
-// Left the sphere, right the model: the same texture on both is the parametrization.
+// Left the sphere, right the model: the same texture on both is the parametrization. The sphere is turned so that its
+// points lie, as far as it goes, on the side of the model that they belong to.
 [[nodiscard]] Image draw_side_by_side(const mesh::TriangleMesh& surface, const CutMesh& mesh, const Image& atlas,
                                       std::uint32_t width, std::uint32_t height);
 

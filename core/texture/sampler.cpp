@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/texture/color.h"
-
 namespace orbis::texture {
 namespace {
 
@@ -27,18 +25,6 @@ std::uint32_t neighbour(std::int64_t i, std::uint32_t size, Wrap wrap) {
 }
 
 } // namespace
-
-Light load(const Image& image, std::uint32_t x, std::uint32_t y) {
-  const std::uint8_t* p = image.at(x, y);
-  return {to_linear(p[0]), to_linear(p[1]), to_linear(p[2]),
-          image.channels == 4 ? static_cast<float>(p[3]) / 255 : 1.0F};
-}
-
-void store(const Light& light, Image& image, std::uint32_t x, std::uint32_t y) {
-  std::uint8_t* p = image.at(x, y);
-  for (std::size_t c = 0; c < 3; ++c) p[c] = to_srgb(light[c]);
-  if (image.channels == 4) p[3] = to_byte(light[3]);
-}
 
 Image halved(const Image& image) {
   Image half{(image.width + 1) / 2, (image.height + 1) / 2, image.channels, {}};
@@ -76,7 +62,7 @@ Sampler::Sampler(const Image& image, Wrap wrap_u, Wrap wrap_v, std::uint32_t lev
 Light Sampler::sample(double x, double y, std::uint32_t level) const {
   level = std::min(level, static_cast<std::uint32_t>(mips_.size()));
   const Image& image = level == 0 ? *image_ : mips_[level - 1];
-  const double scale = std::ldexp(1.0, -static_cast<int>(level));
+  const double scale = 1.0 / static_cast<double>(std::uint64_t{1} << level);
   const double column = scale * wrapped(x, image_->width, wrap_u_) - 0.5;
   const double row = scale * wrapped(y, image_->height, wrap_v_) - 0.5;
   const double left = std::floor(column), top = std::floor(row);

@@ -6,14 +6,23 @@
 #include <vector>
 
 #include "core/texture/bake.h"
+#include "core/texture/color.h"
 #include "core/texture/image.h"
 
 namespace orbis::texture {
 
 using Light = std::array<float, 4>; // linear RGB, straight alpha
 
-[[nodiscard]] Light load(const Image& image, std::uint32_t x, std::uint32_t y);
-void store(const Light& light, Image& image, std::uint32_t x, std::uint32_t y);
+[[nodiscard]] inline Light load(const Image& image, std::uint32_t x, std::uint32_t y) {
+  const std::uint8_t* p = image.at(x, y);
+  return {to_linear(p[0]), to_linear(p[1]), to_linear(p[2]),
+          image.channels == 4 ? static_cast<float>(p[3]) / 255 : 1.0F};
+}
+inline void store(const Light& light, Image& image, std::uint32_t x, std::uint32_t y) {
+  std::uint8_t* p = image.at(x, y);
+  for (std::size_t c = 0; c < 3; ++c) p[c] = to_srgb(light[c]);
+  if (image.channels == 4) p[3] = to_byte(light[3]);
+}
 
 // Half as large in both directions (rounded up): each texel the mean of four in linear light.
 [[nodiscard]] Image halved(const Image& image);
