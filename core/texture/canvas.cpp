@@ -31,6 +31,10 @@ struct Projection {
   std::vector<Projected> points;
   double x_low = INFINITY, x_high = -INFINITY, y_low = INFINITY, y_high = -INFINITY;
 
+  // Never 0, so that what is seen edge-on can be scaled too.
+  [[nodiscard]] double width() const { return std::max(x_high - x_low, 1e-6); }
+  [[nodiscard]] double height() const { return std::max(y_high - y_low, 1e-6); }
+
   void add(const Projected& p) {
     x_low = std::min(x_low, p.x);
     x_high = std::max(x_high, p.x);
@@ -63,8 +67,8 @@ Projection project_all(std::span<const Vec3d> positions) {
 // Moves and scales the outline so that it fits the viewport, in sub-pixels.
 std::vector<Projected> fitted(Projection projection, const Viewport& view) {
   const double border = margin * std::min(view.width, view.height);
-  const double scale = std::min((view.width - 2 * border) / (projection.x_high - projection.x_low),
-                                (view.height - 2 * border) / (projection.y_high - projection.y_low));
+  const double scale =
+      std::min((view.width - 2 * border) / projection.width(), (view.height - 2 * border) / projection.height());
   for (Projected& p : projection.points) {
     p.x = subpixels * (view.x + 0.5 * view.width + scale * (p.x - 0.5 * (projection.x_low + projection.x_high)));
     p.y = subpixels * (view.y + 0.5 * view.height + scale * (p.y - 0.5 * (projection.y_low + projection.y_high)));
@@ -230,7 +234,7 @@ void Canvas::draw_sphere(const Rotation& rotation, const Image& atlas, const Vie
 
 double aspect_of(const Shape& shape) {
   const Projection projection = project_all(shape.positions);
-  return (projection.x_high - projection.x_low) / (projection.y_high - projection.y_low);
+  return projection.width() / projection.height();
 }
 
 Image Canvas::picture() const {
