@@ -1,0 +1,103 @@
+// The report of GET /v1/jobs/{id}/report and of `orbis run --report`.
+#include "api/json.h"
+
+namespace orbis::api {
+namespace {
+
+Json topology_json(const mesh::Topology& t) {
+  return {{"vertices", t.vertices},
+          {"edges", t.edges},
+          {"triangles", t.triangles},
+          {"components", t.components},
+          {"boundary_loops", t.boundary_loops},
+          {"boundary_edges", t.boundary_edges},
+          {"nonmanifold_edges", t.nonmanifold_edges},
+          {"nonmanifold_vertices", t.nonmanifold_vertices},
+          {"duplicate_triangles", t.duplicate_triangles},
+          {"orientable", t.orientable},
+          {"consistently_oriented", t.consistently_oriented},
+          {"euler_characteristic", t.euler_characteristic},
+          {"genus", t.genus},
+          {"signed_volume", t.signed_volume},
+          {"where", t.where}};
+}
+
+Json certificate_json(const sphere::Certificate& c) {
+  return {{"valid", c.valid},
+          {"closed", c.closed},
+          {"manifold", c.manifold},
+          {"connected", c.connected},
+          {"euler_characteristic", c.euler_characteristic},
+          {"triangles", c.triangles},
+          {"vertices", c.vertices},
+          {"folded", c.folded},
+          {"off_grid", c.off_grid},
+          {"max_radius_error", c.max_radius_error},
+          {"degree", c.degree}};
+}
+
+Json distortion_json(const sphere::Distortion& d) {
+  return {{"quasi_conformal_mean", d.quasi_conformal_mean},
+          {"quasi_conformal_p99", d.quasi_conformal_p99},
+          {"log_area_deviation", d.log_area_deviation},
+          {"symmetric_dirichlet", d.symmetric_dirichlet},
+          {"l2_stretch", d.l2_stretch},
+          {"smallest_area", d.smallest_area}};
+}
+
+Json atlas_json(const Report::Atlas& a) {
+  return {{"width", a.width},
+          {"height", a.height},
+          {"gutter", a.gutter},
+          {"charts", a.charts},
+          {"cut_triangles", a.cut_triangles},
+          {"added_vertices", a.added_vertices},
+          {"utilisation", a.utilisation},
+          {"source", a.source}};
+}
+
+Timing timing_of(const Report& report) {
+  Timing timing;
+  double wall = 0, cpu = 0;
+  for (const StageTime& stage : report.stages) {
+    timing.stages.push_back({std::string(name_of(stage.stage)), stage.wall_ms, stage.cpu_ms});
+    wall += stage.wall_ms;
+    cpu += stage.cpu_ms;
+  }
+  timing.wall_ms = wall;
+  timing.cpu_ms = cpu;
+  timing.peak_rss_bytes = report.peak_rss_bytes;
+  return timing;
+}
+
+} // namespace
+
+Json to_json(const Report& report) {
+  Json notes = Json::array();
+  for (const Note& note : report.notes) {
+    notes.push_back({{"code", note.code}, {"message", note.message}, {"where", note.where}});
+  }
+  return {{"version", ORBIS_VERSION},
+          {"format", report.format},
+          {"options", to_json(report.options)},
+          {"input", {{"triangles", report.input_triangles}, {"vertices", report.input_vertices}}},
+          {"topology", topology_json(report.topology)},
+          {"repairs",
+           {{"degenerate_triangles", report.degenerate_triangles}, {"turned_triangles", report.turned_triangles}}},
+          {"embedding",
+           {{"t1_ms", report.t1_ms},
+            {"t2_ms", report.t2_ms},
+            {"t3_ms", report.t3_ms},
+            {"minimum", report.minimum},
+            {"relaxations", report.relaxations},
+            {"converged", report.converged}}},
+          {"distortion", distortion_json(report.distortion)},
+          {"atlas", atlas_json(report.atlas)},
+          {"output", {{"triangles", report.output_triangles}, {"vertices", report.output_vertices}}},
+          {"certificate", certificate_json(report.certificate)},
+          {"cut_certificate", certificate_json(report.cut_certificate)},
+          {"timing", to_json(timing_of(report))},
+          {"notes", std::move(notes)}};
+}
+
+} // namespace orbis::api

@@ -1,0 +1,140 @@
+#include "api/submission.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <map>
+
+#include "api/json.h"
+
+namespace orbis::api {
+namespace {
+
+constexpr std::string_view accepted_types =
+    "model/gltf-binary, model/gltf+json, application/vnd.draco, application/octet-stream and multipart/form-data";
+constexpr std::uint64_t max_options_bytes = 64 << 10;
+
+[[noreturn]] void refuse(Refusal refusal, std::string detail) { throw Refused(refusal, std::move(detail)); }
+
+// At most `limit` bytes of a spooled part.
+std::string read_spooled(const Part& part, std::uint64_t limit) {
+  std::string text(static_cast<std::size_t>(std::min(part.bytes, limit)), '\0');
+  std::ifstream in(part.spooled, std::ios::binary);
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!in) throw Error(ErrorCode::internal, "the upload could not be read back");
+  return text;
+}
+
+Json parse_options_part(const Part& part) {
+  if (part.bytes > max_options_bytes) {
+    refuse(Refusal::bad_request, "the part 'options' is larger than 64 KiB; it is a JSON object of options");
+  }
+  const auto shallow = [](int depth, Json::parse_event_t, Json&) { return depth <= 4; };
+  Json json = Json::parse(read_spooled(part, max_options_bytes), shallow, false);
+  if (!json.is_object()) {
+    refuse(Refusal::bad_request, R"(the part 'options' is not a JSON object such as {"texture_size": 2048})");
+  }
+  return json;
+}
+
+std::string option_text(const Json& value) { return value.is_string() ? value.get<std::string>() : dump(value); }
+
+// Collects every bad option, so that the caller can mend them all at once.
+Options parse_options(const Request& request, const Part* options_part) {
+  std::map<std::string, std::string> values;
+  if (options_part != nullptr) {
+    const Json json = parse_options_part(*options_part);
+    for (const auto& [name, value] : json.items()) values[name] = option_text(value);
+  }
+  for (const auto& [name, value] : request.query) values[name] = value;
+
+  Options options;
+  std::vector<FieldError> errors;
+  for (const auto& [name, value] : values) {
+    try {
+      set_option(options, name, value);
+    } catch (const Error& error) {
+      errors.push_back({"/" + name, error.message()});
+    }
+  }
+  if (!errors.empty()) {
+    Problem problem = make_problem(Error(ErrorCode::invalid_option, errors.front().detail));
+    if (errors.size() > 1) problem.detail = std::to_string(errors.size()) + " options are invalid; see errors";
+    problem.errors = std::move(errors);
+    throw Refused(std::move(problem));
+  }
+  return options;
+}
+
+// A first look at the model, so that what can never be read is refused at the door. The reader decides the rest.
+void check_magic(const Part& model) {
+  if (model.bytes == 0) refuse(Refusal::bad_request, "the model is empty");
+  const std::string head = read_spooled(model, 256);
+  const auto starts = [&](std::string_view magic) { return head.starts_with(magic); };
+  if (starts("glTF") || starts("DRACO")) return;
+  const auto first = head.find_first_not_of(starts("\xEF\xBB\xBF") ? "\xEF\xBB\xBF \t\r\n" : " \t\r\n");
+  if (first != std::string::npos && head[first] == '{') return;
+  const std::string zip = starts("PK\x03\x04") ? "zip archives are not read yet: send the .gltf as the part 'model' of "
+                                                 "multipart/form-data and each further file as a part of its own"
+                                               : "the model is neither GLB, nor glTF JSON, nor Draco";
+  throw Refused(make_problem(Error(ErrorCode::unsupported_format, zip)));
+}
+
+} // namespace
+
+void check_media_type(const Request& request) {
+  static constexpr std::array<std::string_view, 6> known{"",
+                                                         "model/gltf-binary",
+                                                         "model/gltf+json",
+                                                         "application/vnd.draco",
+                                                         "application/octet-stream",
+                                                         "multipart/form-data"};
+  const std::string type = request.media_type();
+  if (std::ranges::find(known, type) != known.end()) return;
+  if (type == "application/x-www-form-urlencoded") {
+    refuse(Refusal::unsupported_media_type,
+           "the body came as a web form, which is what curl says unless told otherwise: add "
+           "-H 'Content-Type: model/gltf-binary'. Accepted are " +
+               std::string(accepted_types));
+  }
+  if (type == "application/zip") {
+    refuse(Refusal::unsupported_media_type,
+           "zip archives are not read yet: send the .gltf and its files as parts of multipart/form-data");
+  }
+  refuse(Refusal::unsupported_media_type,
+         "'" + type.substr(0, 100) + "' is not accepted; accepted are " + std::string(accepted_types));
+}
+
+Submission parse_submission(const Request& request) {
+  Submission submission;
+  submission.idempotency_key = request.header("Idempotency-Key");
+  if (submission.idempotency_key.size() > 255) {
+    refuse(Refusal::bad_request, "the Idempotency-Key is longer than 255 characters");
+  }
+  const Part* options = nullptr;
+  const Part* model = nullptr;
+  for (const Part& part : request.parts) {
+    if (part.name == "options") {
+      options = &part;
+    } else if (part.name == "model") {
+      if (model != nullptr) refuse(Refusal::bad_request, "there are two parts named 'model'");
+      model = &part;
+    } else if (part.file_name.empty()) {
+      refuse(Refusal::bad_request,
+             "the part '" + part.name.substr(0, 64) +
+                 "' has no file name; parts are 'model', 'options', or files that the model names");
+    } else {
+      submission.files.push_back(part);
+    }
+  }
+  submission.options = parse_options(request, options);
+  if (model == nullptr) {
+    refuse(Refusal::bad_request,
+           "there is no model: send it as the body, or as the part 'model' of multipart/form-data");
+  }
+  check_magic(*model);
+  submission.model = *model;
+  return submission;
+}
+
+} // namespace orbis::api

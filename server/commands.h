@@ -1,0 +1,29 @@
+// The subcommands of `orbis`.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/options.h"
+#include "server/config.h"
+
+namespace orbis::server {
+
+// `orbis serve`: until SIGTERM or SIGINT, which drain; a second one ends at once. Returns the exit status.
+[[nodiscard]] int serve(const Config& config);
+
+struct RunArguments {
+  std::filesystem::path input, output;
+  std::optional<std::filesystem::path> report, dump_stages; // a file, a directory
+  std::vector<std::filesystem::path> attachments;           // files, or directories of files
+  std::vector<std::pair<std::string, std::string>> options; // by name, as set_option takes them
+};
+
+// `orbis run`: one job without a server, in a child process all the same. Returns the exit status: 0 with a result, 2
+// where the input was refused (the problem document is on standard error), 1 on anything else.
+[[nodiscard]] int run(const RunArguments& arguments, const JobLimits& limits);
+
+} // namespace orbis::server

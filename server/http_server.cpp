@@ -1,0 +1,353 @@
+#include "server/http_server.h"
+
+#include <fcntl.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cstring>
+
+#define CPPHTTPLIB_LISTEN_BACKLOG 512
+#include <httplib.h>
+
+#include "api/json.h"
+#include "server/connections.h"
+#include "server/file_descriptor.h"
+#include "server/file_writer.h"
+#include "server/log.h"
+#include "server/web_files.h"
+
+namespace orbis::server {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// The connection that this thread serves.
+thread_local Connections::Handle current_connection;
+
+api::Request plain_request(const httplib::Request& request) {
+  api::Request plain;
+  plain.method = request.method;
+  plain.path = request.path;
+  plain.query.assign(request.params.begin(), request.params.end());
+  plain.headers.assign(request.headers.begin(), request.headers.end());
+  return plain;
+}
+
+// Sends a file from disk in pieces.
+void send_file(const api::FileBody& body, const std::string& type, httplib::Response& response) {
+  auto file = std::make_shared<FileDescriptor>(::open(body.path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file->is_open()) throw api::Refused(api::Refusal::expired, "the job expired just now; post the model again");
+  const auto provide = [file, start = body.offset](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+    char buffer[64 << 10];
+    const auto got = ::pread(file->get(), buffer, std::min(length, sizeof buffer), static_cast<off_t>(start + offset));
+    return got > 0 && sink.write(buffer, static_cast<std::size_t>(got));
+  };
+  response.set_content_provider(body.length, type, provide);
+}
+
+void send_stream(api::StreamBody next, const std::string& type, httplib::Response& response) {
+  response.set_chunked_content_provider(type, [next = std::move(next)](std::size_t, httplib::DataSink& sink) {
+    const auto piece = next();
+    if (piece) return sink.write(piece->data(), piece->size());
+    sink.done();
+    return true;
+  });
+}
+
+void fill(api::Response answer, httplib::Response& response) {
+  const std::string type(answer.header("Content-Type"));
+  if (auto* text = std::get_if<std::string>(&answer.body))
+    response.body = std::move(*text);
+  else if (const auto* file = std::get_if<api::FileBody>(&answer.body))
+    send_file(*file, type, response);
+  else
+    send_stream(std::get<api::StreamBody>(std::move(answer.body)), type, response);
+  response.status = answer.status;
+  for (const auto& [name, value] : answer.headers) {
+    if (!response.has_header(name)) response.set_header(name, value);
+  }
+}
+
+void fill(const api::Problem& problem, httplib::Response& response) {
+  response.status = problem.status;
+  response.body = api::dump(api::to_json(problem));
+  response.set_header("Content-Type", "application/problem+json");
+}
+
+// An upload on its way to the disk. Files that no job has taken over are removed with it.
+class Upload {
+public:
+  explicit Upload(BlobStore& blobs) : blobs_(blobs) {}
+  ~Upload() {
+    std::error_code ignored; // a file that a job took over is not there any more
+    for (const api::Part& part : parts) std::filesystem::remove(part.spooled, ignored);
+  }
+  Upload(const Upload&) = delete;
+  Upload& operator=(const Upload&) = delete;
+
+  // Files beyond these are no model's.
+  static constexpr std::size_t max_parts = 256;
+
+  [[nodiscard]] bool begin(std::string name, std::string file_name, std::string media_type) {
+    end();
+    if (parts.size() == max_parts) return false;
+    const auto path = blobs_.spool_path();
+    parts.push_back({std::move(name), std::move(file_name), std::move(media_type), path, 0, {}});
+    writer_.emplace(path);
+    return true;
+  }
+  void write(const char* bytes, std::size_t count) {
+    writer_->write(std::as_bytes(std::span(bytes, count)));
+    parts.back().bytes += count;
+  }
+  void end() {
+    if (writer_) parts.back().sha256 = writer_->commit();
+    writer_.reset();
+  }
+
+  std::vector<api::Part> parts;
+
+private:
+  BlobStore& blobs_;
+  std::optional<FileWriter> writer_;
+};
+
+bool receive(Upload& upload, const httplib::Request& request, const httplib::ContentReader& read) {
+  const auto write = [&](const char* bytes, std::size_t count) {
+    upload.write(bytes, count);
+    return true;
+  };
+  bool complete = false;
+  if (request.is_multipart_form_data()) {
+    complete =
+        read([&](const httplib::FormData& part) { return upload.begin(part.name, part.filename, part.content_type); },
+             write);
+  } else {
+    complete = upload.begin("model", {}, {}) && read(write);
+  }
+  if (complete) upload.end();
+  return complete;
+}
+
+const WebFile* web_file(const httplib::Request& request) {
+  if (request.method != "GET" && request.method != "HEAD") return nullptr;
+  const auto files = web_files();
+  const auto it = std::ranges::find(files, std::string_view(request.path), &WebFile::path);
+  return it == files.end() ? nullptr : &*it;
+}
+
+void send_web_file(const WebFile& file, httplib::Response& response) {
+  response.status = 200;
+  response.set_content(file.contents.data(), file.contents.size(), std::string(file.type));
+  response.set_header("Cache-Control", "no-cache");
+  response.set_header(
+      "Content-Security-Policy",
+      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'");
+}
+
+bool is_probe(const std::string& path) { return path == "/livez" || path == "/readyz" || path == "/metrics"; }
+
+// Runs connections on the library's threads, after making room for them.
+class ConnectionQueue final : public httplib::TaskQueue {
+public:
+  ConnectionQueue(Connections& connections, std::size_t threads)
+      : connections_(connections), pool_(std::min<std::size_t>(8, threads), threads, threads) {}
+  bool enqueue(std::function<void()> task) override {
+    connections_.make_room();
+    return pool_.enqueue(std::move(task));
+  }
+  void shutdown() override { pool_.shutdown(); }
+
+private:
+  Connections& connections_;
+  httplib::ThreadPool pool_;
+};
+
+} // namespace
+
+class HttpServer::Impl final : public httplib::Server {
+public:
+  Impl(api::Router& router, BlobStore& blobs, Metrics& metrics, HttpSettings settings)
+      : router_(router), blobs_(blobs), metrics_(metrics), settings_(std::move(settings)),
+        connections_(settings_.connections) {
+    configure();
+    set_pre_routing_handler([this](const auto& request, auto& response) { return answer_head(request, response); });
+    set_expect_100_continue_handler([this](const auto& request, auto& response) {
+      return refuse_early(request, response) ? response.status : 100;
+    });
+    Post("/v1/jobs",
+         [this](const auto& request, auto& response, const auto& reader) { answer_upload(request, response, reader); });
+    set_error_handler([](const auto&, auto& response) {
+      explain(response);
+      return HandlerResponse::Handled;
+    });
+    set_exception_handler(
+        [](const auto&, auto& response, const std::exception_ptr& exception) { explain(exception, response); });
+    set_post_routing_handler([](const auto&, auto& response) {
+      if (response.status == 204 || response.status == 304) response.headers.erase("Content-Length");
+    });
+    set_logger([this](const auto& request, const auto& response) { record(request, response); });
+  }
+
+  // A few threads more than connections, so that one that makes room need not wait for the one it replaces.
+  static constexpr std::size_t spare_threads = 8;
+
+private:
+  void configure() {
+    new_task_queue = [this] { return new ConnectionQueue(connections_, settings_.connections + spare_threads); };
+    // Not SO_REUSEPORT, the library's default: a second server on the port must fail, not share it.
+    set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
+    set_tcp_nodelay(true);
+    set_read_timeout(settings_.read_timeout.count());
+    set_write_timeout(settings_.write_timeout.count());
+    set_keep_alive_timeout(settings_.keep_alive_timeout.count());
+    constexpr std::uint64_t multipart_overhead = 1 << 20;
+    set_payload_max_length(settings_.max_bytes + multipart_overhead);
+  }
+
+  // As the library's own, but the connection is entered in our list, and Range headers are left to the router.
+  bool process_and_close_socket(socket_t socket) override {
+    current_connection = connections_.open(socket);
+    std::string remote_address, local_address;
+    int remote_port = 0, local_port = 0;
+    const bool result = httplib::detail::process_server_socket(
+        svr_sock_, socket, keep_alive_max_count_, keep_alive_timeout_sec_, read_timeout_sec_, read_timeout_usec_,
+        write_timeout_sec_, write_timeout_usec_, [&](httplib::Stream& stream, bool close, bool& closed) {
+          return process_request(stream, remote_address, remote_port, local_address, local_port, close, closed,
+                                 [](httplib::Request& request) { request.ranges.clear(); });
+        });
+    connections_.close(current_connection);
+    ::shutdown(socket, SHUT_RDWR);
+    ::close(socket);
+    return result;
+  }
+
+  // The routes may wait; meanwhile the connection is not a slow one.
+  api::Response handle(const api::Request& request) {
+    connections_.set_working(current_connection, true);
+    api::Response answer = router_.handle(request);
+    connections_.set_working(current_connection, false);
+    return answer;
+  }
+
+  bool refuse_early(const httplib::Request& request, httplib::Response& response) {
+    if (request.method != "POST" || request.path != "/v1/jobs") return false;
+    if (auto refusal = router_.refuse_early(plain_request(request))) {
+      fill(*std::move(refusal), response);
+      return true;
+    }
+    if (request.get_header_value_u64("Content-Length") <= settings_.max_bytes) return false;
+    fill(
+        api::make_problem(Error(ErrorCode::too_large, "the body is larger than " + std::to_string(settings_.max_bytes) +
+                                                          " bytes, the limit max_bytes of this service")),
+        response);
+    return true;
+  }
+
+  HandlerResponse answer_head(const httplib::Request& request, httplib::Response& response) {
+    if (refuse_early(request, response)) return HandlerResponse::Handled;
+    if (request.method == "POST" && request.path == "/v1/jobs")
+      return HandlerResponse::Unhandled; // the body comes first
+    if (const WebFile* file = web_file(request))
+      send_web_file(*file, response);
+    else
+      fill(handle(plain_request(request)), response);
+    return HandlerResponse::Handled;
+  }
+
+  void answer_upload(const httplib::Request& request, httplib::Response& response,
+                     const httplib::ContentReader& reader) {
+    Upload upload(blobs_);
+    if (!receive(upload, request, reader)) {
+      if (response.status < 400) response.status = 400; // explain() says more
+      return;
+    }
+    api::Request plain = plain_request(request);
+    plain.parts = upload.parts;
+    fill(handle(plain), response);
+  }
+
+  // Gives errors of the library itself their problem document.
+  static void explain(httplib::Response& response) {
+    if (!response.body.empty()) return;
+    response.headers.erase("Content-Length");
+    switch (response.status) {
+    case 413:
+      return fill(
+          api::make_problem(Error(ErrorCode::too_large, "the body is larger than max_bytes, a limit of this service")),
+          response);
+    case 415:
+      return fill(api::make_problem(api::Refusal::unsupported_media_type, "compressed bodies are not accepted"),
+                  response);
+    case 416:
+      return fill(api::make_problem(api::Refusal::range_not_satisfiable, "the Range header cannot be read"), response);
+    case 500:
+      return fill(api::make_problem(Error(ErrorCode::internal, "the request failed; the log says why")), response);
+    default:
+      return fill(api::make_problem(api::Refusal::bad_request,
+                                    "the request is not HTTP as it should be, or its body is "
+                                    "cut off or no valid multipart/form-data"),
+                  response);
+    }
+  }
+
+  static void explain(const std::exception_ptr& exception, httplib::Response& response) {
+    try {
+      std::rethrow_exception(exception);
+    } catch (const api::Refused& refused) {
+      fill(refused.problem(), response);
+    } catch (const Error& error) {
+      fill(api::make_problem(error), response);
+    } catch (const std::exception& error) {
+      log_event(Level::error, "request_failed", {{"reason", error.what()}});
+      fill(api::make_problem(Error(ErrorCode::internal, "the request failed; the log says why")), response);
+    }
+  }
+
+  void record(const httplib::Request& request, const httplib::Response& response) {
+    const auto start = request.start_time_;
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    metrics_.request(request.method, response.status, seconds);
+    if (is_probe(request.path)) return;
+    log_event(Level::info, "request",
+              {{"method", request.method},
+               {"path", request.path.substr(0, 200)},
+               {"status", response.status},
+               {"ms", seconds * 1e3}});
+  }
+
+  api::Router& router_;
+  BlobStore& blobs_;
+  Metrics& metrics_;
+  HttpSettings settings_;
+  Connections connections_;
+  friend class HttpServer;
+};
+
+HttpServer::HttpServer(api::Router& router, BlobStore& blobs, Metrics& metrics, HttpSettings settings)
+    : impl_(std::make_unique<Impl>(router, blobs, metrics, std::move(settings))) {}
+
+HttpServer::~HttpServer() = default;
+
+int HttpServer::bind() {
+  const HttpSettings& settings = impl_->settings_;
+  const int port = settings.port == 0                                  ? impl_->bind_to_any_port(settings.host)
+                   : impl_->bind_to_port(settings.host, settings.port) ? settings.port
+                                                                       : -1;
+  if (port < 0) {
+    throw Error(ErrorCode::internal, "cannot listen on " + settings.host + " port " + std::to_string(settings.port) +
+                                         ": the address is taken, or not of this machine");
+  }
+  return port;
+}
+
+void HttpServer::serve() {
+  if (!impl_->listen_after_bind()) throw Error(ErrorCode::internal, "the server's socket failed");
+}
+
+void HttpServer::stop() { impl_->stop(); }
+
+} // namespace orbis::server

@@ -1,0 +1,416 @@
+#include "server/scheduler.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/json.h"
+#include "server/file_writer.h"
+#include "server/log.h"
+#include "server/sha256.h"
+
+namespace orbis::server {
+namespace {
+
+using api::Job;
+using api::JobState;
+using api::Json;
+
+constexpr std::uint64_t max_report_bytes = 16 << 20;
+constexpr std::string_view output_names[] = {"result.glb", "report.json", "atlas.png", "preview.png"}; // as JobFile
+
+// The same for two requests that ask for the same.
+std::string fingerprint(const api::Submission& submission) {
+  Json json{{"options", api::to_json(submission.options)}, {"model", submission.model.sha256}};
+  for (const api::Part& part : submission.files) json["files"][part.file_name] = part.sha256;
+  return sha256_of(api::dump(json));
+}
+
+StoredJob stored_job(const api::Submission& submission, std::string id) {
+  StoredJob stored;
+  stored.job.id = std::move(id);
+  stored.job.created = api::now();
+  stored.job.options = submission.options;
+  stored.job.input = {submission.model.sha256, submission.model.bytes, std::nullopt};
+  stored.inputs.push_back({"model", submission.model.bytes});
+  for (const api::Part& part : submission.files) stored.inputs.push_back({part.file_name, part.bytes});
+  stored.idempotency_key = submission.idempotency_key;
+  stored.fingerprint = fingerprint(submission);
+  return stored;
+}
+
+void log_job(std::string_view event, const Job& job) {
+  Json fields{{"job", job.id}, {"state", name_of(job.state)}, {"attempt", job.attempt}};
+  if (job.timing.wall_ms) fields["wall_ms"] = *job.timing.wall_ms;
+  if (job.timing.cpu_ms) fields["cpu_ms"] = *job.timing.cpu_ms;
+  if (job.problem) fields["problem"] = {{"type", job.problem->slug}, {"detail", job.problem->detail}};
+  log_event(Level::info, event, fields);
+}
+
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+} // namespace
+
+Scheduler::Scheduler(JobStore& store, BlobStore& blobs, JobRunner& runner, Metrics& metrics, SchedulerSettings settings)
+    : store_(store), blobs_(blobs), runner_(runner), metrics_(metrics), settings_(std::move(settings)) {
+  take_up();
+}
+
+Scheduler::~Scheduler() { drain(std::chrono::milliseconds(0)); }
+
+void Scheduler::start() {
+  for (std::uint32_t i = 0; i < settings_.workers; ++i) {
+    threads_.emplace_back([this](std::stop_token stop) { work(std::move(stop)); });
+  }
+  threads_.emplace_back([this](std::stop_token stop) {
+    Lock lock(mutex_);
+    while (!stop.stop_requested()) {
+      lock.unlock();
+      collect_garbage(api::now());
+      lock.lock();
+      work_.wait_for(lock, stop, std::chrono::minutes(1), [] { return false; });
+    }
+  });
+}
+
+// Queued jobs stay queued; running ones were interrupted. A job that goes down with the service too often is given up.
+void Scheduler::take_up() {
+  for (StoredJob& stored : store_.unfinished()) {
+    if (stored.job.state == JobState::running && stored.job.attempt >= settings_.attempts) {
+      fail(stored, Error(ErrorCode::internal, "the job was interrupted " + std::to_string(stored.job.attempt) +
+                                                  " times; it is not tried again"));
+      changed(stored);
+      continue;
+    }
+    stored.job.state = JobState::queued;
+    stored.job.started.reset();
+    changed(stored);
+    queue_.push_back(stored.job.id);
+    std::string id = stored.job.id;
+    live_[std::move(id)].stored = std::move(stored);
+  }
+  queued_ = queue_.size();
+  for (const std::string& id : blobs_.jobs()) {
+    if (!store_.find(id)) blobs_.remove(id);
+  }
+}
+
+void Scheduler::drain(std::chrono::milliseconds grace) {
+  Lock lock(mutex_);
+  draining_ = true;
+  changes_.notify_all();
+  changes_.wait_for(lock, grace, [this] { return running_ == 0; });
+  for (auto& [id, live] : live_) {
+    if (live.stored.job.state == JobState::running) live.stop.request_stop();
+  }
+  lock.unlock();
+  threads_.clear(); // stops and joins
+}
+
+void Scheduler::collect_garbage(api::Time time) {
+  const Lock lock(mutex_);
+  for (StoredJob& stored : store_.due(time)) {
+    stored.job.state = JobState::expired;
+    stored.job.result.reset();
+    stored.outputs.clear();
+    changed(stored);
+    remove_files(stored.job.id);
+    log_job("job_expired", stored.job);
+  }
+  store_.forget_expired(time - std::chrono::days(30));
+}
+
+void Scheduler::remove_files(const std::string& id) {
+  try {
+    blobs_.remove(id);
+  } catch (const Error& error) {
+    // The store has logged why. Files without a job are removed at the next start.
+    log_event(Level::warning, "files_left", {{"job", id}, {"reason", error.message()}});
+  }
+}
+
+// Gives the job its next version, writes it down and wakes those who wait for it.
+void Scheduler::changed(StoredJob& stored) {
+  // Microseconds since 1970: versions also grow over a restart.
+  const auto time =
+      std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch());
+  stored.job.version = std::max(stored.job.version + 1, static_cast<std::uint64_t>(time.count()));
+  store_.update(stored);
+  changes_.notify_all();
+}
+
+void Scheduler::finish(StoredJob& stored, JobState state) const {
+  stored.job.state = state;
+  stored.job.finished = api::now();
+  stored.job.expires = *stored.job.finished + settings_.time_to_live;
+}
+
+void Scheduler::fail(StoredJob& stored, const Error& error) const {
+  stored.job.problem = api::make_problem(error);
+  stored.job.problem->instance = "/v1/jobs/" + stored.job.id;
+  finish(stored, JobState::failed);
+}
+
+std::optional<Job> Scheduler::earlier_submission(const std::string& key, const std::string& fingerprint) {
+  if (key.empty()) return std::nullopt;
+  const auto earlier = store_.find_by_key(key);
+  if (!earlier) return std::nullopt;
+  if (earlier->fingerprint != fingerprint) {
+    throw api::Refused(api::Refusal::key_reused,
+                       "this Idempotency-Key came with another model or other options before; use a new key");
+  }
+  return find_locked(earlier->job.id);
+}
+
+Job Scheduler::submit(api::Submission submission) {
+  const Lock lock(mutex_);
+  if (draining_) throw api::Refused(api::Refusal::draining, "the service is shutting down; try again soon");
+  StoredJob stored = stored_job(submission, ids_.next(api::now()));
+  if (auto earlier = earlier_submission(stored.idempotency_key, stored.fingerprint)) return *std::move(earlier);
+  if (queue_full()) {
+    metrics_.job_refused();
+    throw api::Refused(api::Refusal::queue_full,
+                       "all " + std::to_string(settings_.queue) + " places in the queue are taken; try again later");
+  }
+  const std::string id = stored.job.id;
+  blobs_.adopt(id, 0, submission.model);
+  for (std::size_t i = 0; i < submission.files.size(); ++i) blobs_.adopt(id, i + 1, submission.files[i]);
+  stored.job.version = 1;
+  store_.insert(stored);
+  changed(stored);
+  queue_.push_back(id);
+  queued_ = queue_.size();
+  Live& live = live_[id];
+  live.stored = std::move(stored);
+  metrics_.job_accepted();
+  log_job("job_queued", live.stored.job);
+  work_.notify_one();
+  return shown(live.stored);
+}
+
+// The job as clients see it.
+Job Scheduler::shown(const StoredJob& stored) const {
+  Job job = stored.job;
+  if (job.state == JobState::queued) {
+    const auto place = std::ranges::find(queue_, job.id);
+    if (place != queue_.end()) job.queue_position = static_cast<std::uint64_t>(place - queue_.begin()) + 1;
+  }
+  return job;
+}
+
+std::optional<Job> Scheduler::find_locked(std::string_view id) {
+  if (const auto live = live_.find(id); live != live_.end()) return shown(live->second.stored);
+  if (const auto stored = store_.find(id)) return stored->job;
+  return std::nullopt;
+}
+
+std::optional<Job> Scheduler::find(std::string_view id) {
+  const Lock lock(mutex_);
+  return find_locked(id);
+}
+
+std::optional<Job> Scheduler::wait(std::string_view id, std::uint64_t version, std::chrono::milliseconds timeout) {
+  Lock lock(mutex_);
+  const auto unchanged = [&] {
+    const auto live = live_.find(id);
+    return live != live_.end() && live->second.stored.job.version == version &&
+           !is_final(live->second.stored.job.state) && !draining_;
+  };
+  changes_.wait_for(lock, timeout, [&] { return !unchanged(); });
+  return find_locked(id);
+}
+
+api::JobPage Scheduler::list(const api::JobQuery& query) {
+  const Lock lock(mutex_);
+  api::JobQuery one_more = query;
+  ++one_more.limit;
+  api::JobPage page;
+  for (const StoredJob& stored : store_.list(one_more)) page.items.push_back(find_locked(stored.job.id).value());
+  if (page.items.size() > query.limit) {
+    page.items.resize(query.limit);
+    page.next_cursor = page.items.back().id;
+  }
+  return page;
+}
+
+void Scheduler::remove_from_queue(const std::string& id) {
+  std::erase(queue_, id);
+  queued_ = queue_.size();
+}
+
+std::optional<Job> Scheduler::cancel(std::string_view id) {
+  const Lock lock(mutex_);
+  const auto it = live_.find(id);
+  if (it == live_.end() || is_final(it->second.stored.job.state)) return find_locked(id);
+  StoredJob& stored = it->second.stored;
+  const bool was_running = stored.job.state == JobState::running;
+  finish(stored, JobState::canceled);
+  changed(stored);
+  log_job("job_canceled", stored.job);
+  Job job = stored.job;
+  if (was_running) {
+    it->second.stop.request_stop(); // its worker takes it out of live_
+  } else {
+    metrics_.job_finished(job);
+    remove_from_queue(job.id);
+    live_.erase(it);
+  }
+  return job;
+}
+
+std::optional<api::StoredFile> Scheduler::file(std::string_view id, api::JobFile kind) {
+  const Lock lock(mutex_);
+  const auto stored = store_.find(id);
+  if (!stored || stored->job.state != JobState::succeeded) return std::nullopt;
+  const std::string_view name = output_names[static_cast<std::size_t>(kind)];
+  const auto output = std::ranges::find(stored->outputs, name, [](const auto& o) { return std::string_view(o.first); });
+  if (output == stored->outputs.end()) return std::nullopt;
+  return api::StoredFile{blobs_.output_path(id, name), output->second.bytes, output->second.sha256};
+}
+
+std::chrono::seconds Scheduler::retry_after() const {
+  if (draining_) return std::chrono::seconds(5);
+  const double seconds = std::ceil(mean_wall_ms_ / 1e3 / settings_.workers);
+  return std::chrono::seconds(static_cast<std::int64_t>(std::clamp(seconds, 1.0, 60.0)));
+}
+
+std::string Scheduler::metrics() const {
+  return metrics_.text({queued_, running_, settings_.workers, settings_.queue, draining_});
+}
+
+void Scheduler::work(std::stop_token stop) {
+  Lock lock(mutex_);
+  while (work_.wait(lock, stop, [this] { return !queue_.empty() && !draining_; })) {
+    const std::string id = std::move(queue_.front());
+    queue_.pop_front();
+    queued_ = queue_.size();
+    ++running_;
+    try {
+      run(id, lock);
+    } catch (const std::exception& error) {
+      // The database or the disk failed under the job: it stays as it is on disk and is taken up at the next start.
+      if (!lock.owns_lock()) lock.lock();
+      log_event(Level::error, "job_abandoned", {{"job", id}, {"reason", error.what()}});
+      live_.erase(id);
+    }
+    --running_;
+    changes_.notify_all();
+  }
+}
+
+// Called and left with the lock held; the job itself runs without it.
+void Scheduler::run(const std::string& id, Lock& lock) {
+  Live& live = live_.at(id); // stays where it is: only its worker erases a running job
+  begin(live);
+  const JobTask task = task_of(live.stored);
+  const JobHooks hooks{[&](Stage stage, std::uint64_t done, std::uint64_t total) {
+                         const Lock progress_lock(mutex_);
+                         progress(live, stage, done, total);
+                       },
+                       [&](std::string_view name) {
+                         return std::ranges::find(output_names, name) != std::end(output_names)
+                                    ? blobs_.output_path(id, name)
+                                    : std::filesystem::path();
+                       }};
+  const std::stop_token stop = live.stop.get_token();
+  lock.unlock();
+  JobOutcome outcome;
+  try {
+    outcome = runner_.run(task, hooks, stop);
+  } catch (const Error& error) {
+    outcome.error = error;
+  }
+  lock.lock();
+  end(live, outcome);
+  live_.erase(id);
+}
+
+JobTask Scheduler::task_of(const StoredJob& stored) const {
+  JobTask task;
+  task.options = stored.job.options;
+  task.limits = settings_.limits;
+  for (std::size_t i = 0; i < stored.inputs.size(); ++i) {
+    InputFile file{stored.inputs[i].name, blobs_.input_path(stored.job.id, i), stored.inputs[i].bytes};
+    if (i == 0)
+      task.model = std::move(file);
+    else
+      task.files.push_back(std::move(file));
+  }
+  return task;
+}
+
+void Scheduler::begin(Live& live) {
+  Job& job = live.stored.job;
+  job.state = JobState::running;
+  job.started = api::now();
+  ++job.attempt;
+  job.timing.queue_ms = static_cast<double>(std::max<std::int64_t>(0, (*job.started - job.created).count()));
+  live.started = std::chrono::steady_clock::now();
+  changed(live.stored);
+  log_job("job_started", job);
+}
+
+// Progress lives in memory only: it is worth nothing after a restart.
+void Scheduler::progress(Live& live, Stage stage, std::uint64_t done, std::uint64_t total) {
+  Job& job = live.stored.job;
+  if (is_final(job.state)) return;
+  const double before = job.progress ? job.progress->percent : 0.0;
+  const double percent = std::max(before, std::min(99.9, api::overall_percent(stage, done, total)));
+  const double elapsed = milliseconds_since(live.started);
+  live.milestones.reach(percent, elapsed);
+  job.progress =
+      api::JobProgress{stage, std::min(done, total), total, percent, time_to_go_.estimate(live.milestones, elapsed)};
+  job.timing.wall_ms = elapsed;
+  ++job.version;
+  changes_.notify_all();
+}
+
+void Scheduler::end(Live& live, const JobOutcome& outcome) {
+  StoredJob& stored = live.stored;
+  stored.job.timing.wall_ms = outcome.wall_ms;
+  stored.job.timing.cpu_ms = outcome.cpu_ms;
+  if (outcome.peak_rss_bytes > 0) stored.job.timing.peak_rss_bytes = outcome.peak_rss_bytes;
+  if (stored.job.state == JobState::canceled) {
+    stored.job.progress.reset();
+  } else if (!outcome.error) {
+    succeed(live, outcome);
+  } else if (outcome.error->code() == ErrorCode::canceled && draining_) {
+    stored.job.state = JobState::queued; // for the next run of the service
+    stored.job.started.reset();
+    stored.job.progress.reset();
+    stored.job.timing = {};
+  } else {
+    fail(stored, *outcome.error);
+  }
+  changed(stored);
+  log_job("job_ended", stored.job);
+  if (is_final(stored.job.state)) metrics_.job_finished(stored.job);
+}
+
+void Scheduler::succeed(Live& live, const JobOutcome& outcome) {
+  StoredJob& stored = live.stored;
+  for (const OutputFile& file : outcome.files)
+    stored.outputs.emplace_back(file.name, api::JobResult{file.sha256, file.bytes});
+  try {
+    for (const std::string_view name : output_names) {
+      const auto file = std::ranges::find(outcome.files, name, &OutputFile::name);
+      if (file == outcome.files.end()) throw Error(ErrorCode::internal, "a result of the job is missing");
+      if (name == "result.glb") stored.job.result = api::JobResult{file->sha256, file->bytes};
+    }
+    const auto text = read_file(blobs_.output_path(stored.job.id, "report.json"), max_report_bytes);
+    const Json report = Json::parse(text);
+    stored.job.timing.stages = api::timing_from_json(report.at("timing")).stages;
+    stored.job.input.triangles = report.at("input").at("triangles").get<std::uint64_t>();
+  } catch (const Error& error) {
+    return fail(stored, error);
+  } catch (const Json::exception&) {
+    return fail(stored, Error(ErrorCode::internal, "the job's report is unreadable"));
+  }
+  if (stored.job.progress) stored.job.progress->percent = 100;
+  finish(stored, JobState::succeeded);
+  time_to_go_.learn(live.milestones, outcome.wall_ms);
+  mean_wall_ms_ = 0.8 * mean_wall_ms_ + 0.2 * outcome.wall_ms;
+}
+
+} // namespace orbis::server

@@ -1,0 +1,64 @@
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <semaphore>
+
+#include "server/commands.h"
+#include "server/file_descriptor.h"
+#include "server/log.h"
+#include "server/signals.h"
+#include "server/worker_process.h"
+
+namespace orbis::server {
+namespace {
+
+// One service at a time on a data directory.
+FileDescriptor lock_data(const std::filesystem::path& data) {
+  std::error_code error;
+  std::filesystem::create_directories(data, error);
+  FileDescriptor lock(::open((data / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+  if (!lock.is_open()) throw Error(ErrorCode::internal, "the data directory '" + data.string() + "' cannot be written");
+  if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
+    throw Error(ErrorCode::internal, "another orbis serves the data directory '" + data.string() + "'");
+  }
+  return lock;
+}
+
+} // namespace
+
+int serve(const Config& config) {
+  std::binary_semaphore stop_requested{0};
+  const SignalWatch signals([&](int count) {
+    if (count > 1) ::_exit(1); // what runs is taken up at the next start
+    stop_requested.release();
+  });
+  const FileDescriptor lock = lock_data(config.data);
+  JobStore store(config.data / "jobs.sqlite");
+  BlobStore blobs(config.data);
+  Metrics metrics;
+  WorkerProcess runner;
+  Scheduler scheduler(store, blobs, runner, metrics, config.scheduler);
+  api::Router router(scheduler, {config.keys});
+  HttpServer http(router, blobs, metrics, config.http);
+
+  const int port = http.bind();
+  scheduler.start();
+  const std::jthread listener([&] {
+    try {
+      http.serve();
+    } catch (const Error& error) {
+      log_event(Level::error, "http", {{"reason", error.message()}});
+      stop_requested.release();
+    }
+  });
+  log_event(Level::info, "listening", {{"address", "http://" + config.http.host + ":" + std::to_string(port)}});
+  stop_requested.acquire();
+  log_event(Level::info, "draining");
+  scheduler.drain(config.drain); // meanwhile requests are answered, new jobs with 503
+  http.stop();
+  log_event(Level::info, "stopped");
+  return 0;
+}
+
+} // namespace orbis::server
