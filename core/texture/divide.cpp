@@ -77,18 +77,18 @@ private:
         ->sphere;
   }
 
-  // Along a border two faces come into question: the triangle lies on the side of its third corner.
+  // Along a border two faces come into question: the triangle lies on the side on which its corners lie together. The
+  // two on the border hardly count, and the answer is the same for all of the triangle's segments on this border.
   [[nodiscard]] Face face_of_segment(std::size_t i) const {
-    const DividedPoint& a = point(i);
-    const DividedPoint& b = point(next(i));
-    const Site on = a.site >= Site::edge_01 ? a.site : static_cast<Site>(static_cast<int>(a.site) + 3);
-    const GridPoint& third = corner((static_cast<std::size_t>(on) - 3 + 2) % 3);
-    const auto common = static_cast<FaceMask>(a.faces & b.faces);
+    const auto common = static_cast<FaceMask>(point(i).faces & point(next(i)).faces);
     if (common == 0) refuse();
     Face best = face_count;
     for (Face f = 0; f < face_count; ++f)
-      if ((common & bit_of(f)) != 0 && (best == face_count || along(third, f) > along(third, best))) best = f;
+      if ((common & bit_of(f)) != 0 && (best == face_count || depth(f) > depth(best))) best = f;
     return best;
+  }
+  [[nodiscard]] std::int64_t depth(Face f) const {
+    return std::int64_t{along(corner(0), f)} + along(corner(1), f) + along(corner(2), f);
   }
 
   // A place on the border of f, in eighths of a turn: odd on a side (2 i + 1 on side i), even at a corner (2 i + 2
@@ -113,7 +113,9 @@ private:
   void follow_border(Face f, const DividedPoint& from, const DividedPoint& to, Polygon& polygon) {
     const std::size_t start = place_on_border(from, f);
     std::size_t distance = (place_on_border(to, f) + 8 - start) % 8;
-    if (distance == 0 && start % 2 == 1 && !ahead(from.sphere, to.sphere, f, start / 2)) distance = 8;
+    // Back to the same side: all around the face, or, within the tolerance, just along the side.
+    if (distance == 0 && start % 2 == 1 && !ahead(from.sphere, to.sphere, f, start / 2) && holds_centre(f))
+      distance = 8;
     for (std::size_t place = start + 1; place < start + distance; ++place)
       if (place % 2 == 0) polygon.push_back(corner_inside(f, (place / 2 + 3) % 4));
   }
@@ -121,9 +123,10 @@ private:
   std::uint32_t corner_inside(Face f, std::size_t i) {
     DividedPoint p;
     p.sphere = cube_corner(f, i);
-    for (std::size_t known = boundary_; known < division_.points.size(); ++known)
-      if (point(known).sphere == p.sphere) return static_cast<std::uint32_t>(known);
     p.faces = faces_at(p.sphere);
+    // Known already, or on the boundary: a point within the tolerance of the corner stands for it.
+    for (std::size_t known = 0; known < division_.points.size(); ++known)
+      if (point(known).faces == p.faces) return static_cast<std::uint32_t>(known);
     // Central projection: the weight of a corner is the volume that p spans with the two others.
     double sum = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -152,11 +155,15 @@ private:
     return polygon;
   }
 
+  [[nodiscard]] bool holds_centre(Face f) const {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (sphere::orientation(corner(k), corner((k + 1) % 3), axis_point(f)) <= 0) return false;
+    return true;
+  }
+
   // No edge runs in f: then the triangle holds all of it or nothing.
   [[nodiscard]] Polygon whole_face(Face f) {
-    const GridPoint centre = axis_point(f);
-    for (std::size_t k = 0; k < 3; ++k)
-      if (sphere::orientation(corner(k), corner((k + 1) % 3), centre) <= 0) return {};
+    if (!holds_centre(f)) return {};
     Polygon polygon;
     for (std::size_t i = 0; i < 4; ++i) polygon.push_back(corner_inside(f, i));
     return polygon;
