@@ -14,6 +14,7 @@
 //  * A barrier. Thin limbs still shrink exponentially with their length, as in every map that keeps angles. A triangle
 //    whose area falls below 1 % of the mean at that level pushes back (shape_preserving_star.h); where no triangle
 //    does, the energy is exactly the paper's. So a limb keeps its vertices 0.1 of the mean edge apart, not 1e-6.
+//    Vertices among triangles far below that limit move for a tenth of the gain that the threshold asks for.
 //  * A move that would fold a triangle is shortened until it does not, where the paper leaves it out.
 //  * A new vertex goes at once from its parent's place to a point that sees its whole ring (insertion_place): there
 //    always is one.

@@ -76,9 +76,9 @@ void ImprovementQueue::erase(Index v) {
 }
 
 Relaxation::Relaxation(const StarSource& source, std::vector<Vec3d>& points, double threshold, Progress& progress)
-    : source_(source), points_(points), threshold_(threshold), gain_(std::min(1e-4, 0.1 * (1 - threshold))),
-      progress_(progress), queue_(points.size()), place_(points.size()), stale_(points.size(), 0),
-      valence_(points.size(), 0) {}
+    : source_(source), points_(points), threshold_(threshold), fine_threshold_(1 - 0.1 * (1 - threshold)),
+      gain_(std::min(1e-4, 0.1 * (1 - fine_threshold_))), progress_(progress), queue_(points.size()),
+      place_(points.size()), stale_(points.size(), 0), valence_(points.size(), 0) {}
 
 const Star& Relaxation::star(Index v) {
   source_.gather(v, ring_, star_);
@@ -94,7 +94,7 @@ void Relaxation::touch(Index v) {
   stale_[v] = 0;
   valence_[v] = static_cast<std::uint32_t>(ring_.size());
   place_[v] = best.point;
-  if (best.ratio < threshold_)
+  if (best.ratio < (best.pressed ? fine_threshold_ : threshold_))
     queue_.set(v, best.ratio);
   else
     queue_.erase(v);

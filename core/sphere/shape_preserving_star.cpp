@@ -8,6 +8,7 @@ namespace orbis::sphere {
 namespace {
 
 constexpr int newton_steps = 8;         // a healthy star needs one or two
+constexpr double pressed_below = 0.1;   // V / floor
 constexpr int backtracks = 20;          // halvings of one step
 constexpr int stereographic_rounds = 5; // fixed-point rounds for a starting place
 
@@ -122,6 +123,7 @@ StarDerivatives star_derivatives(const Star& star, const Vec3d& p, double floor)
       const Vec3d n_full = cross(p, b - a) + normal;
       const double n1 = dot(n_full, d.e1), n2 = dot(n_full, d.e2), x = volume / floor;
       const double slope = 1 - 1 / (x * x), curvature = 2 / (x * x * x * floor);
+      d.pressed = d.pressed || x < pressed_below;
       d.value += barrier(volume, floor);
       d.g1 += slope * n1;
       d.g2 += slope * n2;
@@ -138,11 +140,13 @@ Place best_place(const Star& star, double floor, double gain) {
   const double start = star_energy(star, star.centre, floor);
   Vec3d point = star.centre;
   double energy = start;
+  bool pressed = false;
   for (int i = 0; i < stereographic_rounds && !in_hemisphere(star, point); ++i) {
     if (!approach(star, point, stereographic_mean(star, point), floor, point, energy)) break;
   }
   for (int i = 0; i < newton_steps; ++i) {
     const StarDerivatives d = star_derivatives(star, point, floor);
+    if (i == 0) pressed = d.pressed;
     const double determinant = d.h11 * d.h22 - d.h12 * d.h12;
     if (!(determinant > 0)) break;
     const double s1 = (d.h12 * d.g2 - d.h22 * d.g1) / determinant, s2 = (d.h12 * d.g1 - d.h11 * d.g2) / determinant;
@@ -150,7 +154,7 @@ Place best_place(const Star& star, double floor, double gain) {
     if (expected < gain * energy) break;
     if (!approach(star, point, point + d.e1 * s1 + d.e2 * s2, floor, point, energy)) break;
   }
-  return {point, start > 0 && std::isfinite(start) ? energy / start : 1};
+  return {point, start > 0 && std::isfinite(start) ? energy / start : 1, pressed};
 }
 
 } // namespace orbis::sphere

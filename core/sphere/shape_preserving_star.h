@@ -43,6 +43,7 @@ struct Star {
 // part of their Hessian only.
 struct StarDerivatives {
   Vec3d e1, e2;          // orthonormal basis of the tangent plane, (e1, e2, p) right-handed
+  bool pressed = false;  // some triangle has V < floor / 10
   double value = 0;      // star_energy
   double g1 = 0, g2 = 0; // gradient along e1, e2
   double h11 = 0, h12 = 0, h22 = 0;
@@ -52,7 +53,8 @@ struct StarDerivatives {
 // The best place found for the star's centre, and by how much it is better.
 struct Place {
   Vec3d point;
-  double ratio = 1; // star_energy there / star_energy at the centre, at most 1; 1: stay
+  double ratio = 1;     // star_energy there / star_energy at the centre, at most 1; 1: stay
+  bool pressed = false; // with the centre where it is, some triangle has V < floor / 10
 };
 // Newton's method from the centre, each step shortened until the energy falls; where the ring does not lie in the
 // hemisphere around the centre, weighted means in the stereographic tangent plane come first. The star with its centre
