@@ -42,7 +42,8 @@ Json distortion_json(const sphere::Distortion& d) {
           {"log_area_deviation", d.log_area_deviation},
           {"symmetric_dirichlet", d.symmetric_dirichlet},
           {"l2_stretch", d.l2_stretch},
-          {"smallest_area", d.smallest_area}};
+          {"smallest_area", d.smallest_area},
+          {"needles", d.needles}};
 }
 
 Json atlas_json(const Report::Atlas& a) {

@@ -33,6 +33,12 @@ Stretch stretch_of(const std::array<Vec3d, 3>& p, const std::array<Vec3d, 3>& q)
   return {twice / 2, doubled_area(q[0], q[1], q[2]) / 2, sum / (twice * twice)};
 }
 
+// Lower than 1e-7 of its longest edge; also true of a triangle without area.
+bool is_needle(const std::array<Vec3d, 3>& p, double area) {
+  const double longest = std::max({squared_norm(p[1] - p[0]), squared_norm(p[2] - p[1]), squared_norm(p[0] - p[2])});
+  return !(2 * area > 1e-7 * longest);
+}
+
 double percentile(std::vector<std::pair<double, double>>& value_and_weight, double fraction) {
   std::sort(value_and_weight.begin(), value_and_weight.end());
   double total = 0, below = 0;
@@ -84,7 +90,11 @@ Distortion measure_distortion(const mesh::TriangleMesh& mesh, std::span<const Ve
     const Stretch s = stretch_of(p, q);
     image += s.image;
     surface += s.area;
-    if (s.area > 0 && s.image > 0 && std::isfinite(s.trace)) stretches.push_back(s);
+    if (is_needle(p, s.area) || !(s.image > 0)) {
+      ++out.needles;
+    } else {
+      stretches.push_back(s);
+    }
   }
   if (stretches.empty()) return out;
 

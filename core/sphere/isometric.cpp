@@ -32,7 +32,7 @@ constexpr double sweep_budget = 20'000; // vertices times sweeps
 constexpr double fewest_sweeps = 8, most_sweeps = 50;
 // A step is worthwhile where it gains this part of the star's energy; less on levels of fewer than 2,000 vertices.
 constexpr double worthwhile_gain = 0.01, smallest_gain = 1e-4, small_level = 2'000;
-constexpr std::uint32_t final_sweeps = 16;
+constexpr std::uint32_t final_sweeps = 200; // of ever fewer vertices
 constexpr double final_gain = 0.003;
 
 class Refinement {

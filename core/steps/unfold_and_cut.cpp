@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/sphere/canonical_turn.h"
 #include "core/sphere/embedding.h"
 #include "core/sphere/snap.h"
 
@@ -38,7 +39,7 @@ std::vector<Vec3d> embed(const Surface& surface, const Options& options, Progres
                             "better",
                             ""});
   }
-  return std::move(embedding.points);
+  return sphere::canonically_turned(surface.mesh, std::move(embedding.points));
 }
 
 CutSphere snap_and_cut(const Surface& surface, std::span<const Vec3d> points, const texture::AtlasLayout& layout,

@@ -10,8 +10,8 @@
 
 namespace orbis {
 
-// The unit vectors of the map in doubles, by the objective that the options name. Fills the report's times and
-// "Minimum" (Eq. 3).
+// The unit vectors of the map in doubles, by the objective that the options name, turned to the model's directions.
+// Fills the report's times and "Minimum" (Eq. 3).
 [[nodiscard]] std::vector<Vec3d> embed(const Surface& surface, const Options& options, Progress& progress,
                                        Report& report);
 
