@@ -77,6 +77,7 @@ struct Writer {
 };
 
 // No exception may pass through libpng.
+// NOLINTNEXTLINE(readability-non-const-parameter): the signature is libpng's
 void write_bytes(png_structp png, png_bytep data, std::size_t count) {
   auto& writer = *static_cast<Writer*>(png_get_io_ptr(png));
   try {

@@ -29,7 +29,8 @@ struct Projected {
 
 struct Projection {
   std::vector<Projected> points;
-  double x_low = INFINITY, x_high = -INFINITY, y_low = INFINITY, y_high = -INFINITY;
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  double x_low = infinity, x_high = -infinity, y_low = infinity, y_high = -infinity;
 
   // Never 0, so that what is seen edge-on can be scaled too.
   [[nodiscard]] double width() const { return std::max(x_high - x_low, 1e-6); }

@@ -2,16 +2,18 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
 namespace orbis::texture {
 
 struct SrgbTables {
-  // sRGB is steepest at black: 12.92 * 255 = 3295 bytes per unit of light, about 20 steps of the table to a byte.
+  // sRGB is steepest at black: 12.92 * 255 = 3295 bytes per unit of light, about 20 steps of the table to a byte. An
+  // entry is the byte of the middle of its step, so that a lookup need not round.
   static constexpr std::size_t steps = 1U << 16U;
   std::array<float, 256> linear{};
-  std::array<std::uint8_t, steps + 1> srgb{};
+  std::array<std::uint8_t, steps> srgb{};
 
   SrgbTables();
 };
@@ -24,13 +26,13 @@ extern const SrgbTables srgb_tables;
 [[nodiscard]] inline std::uint8_t to_srgb(float linear) {
   if (!(linear > 0)) return 0;
   if (linear >= 1) return 255;
-  return srgb_tables.srgb[static_cast<std::size_t>(linear * static_cast<float>(SrgbTables::steps) + 0.5F)];
+  return srgb_tables.srgb[static_cast<std::size_t>(linear * static_cast<float>(SrgbTables::steps))];
 }
 
 // The nearest byte of what is linear already, as alpha.
 [[nodiscard]] inline std::uint8_t to_byte(float value) {
   if (!(value > 0)) return 0;
-  return value >= 1 ? 255 : static_cast<std::uint8_t>(value * 255 + 0.5F);
+  return value >= 1 ? 255 : static_cast<std::uint8_t>(std::lround(255 * value));
 }
 
 using Rgb = std::array<std::uint8_t, 3>;

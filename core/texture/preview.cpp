@@ -39,7 +39,7 @@ Rotation towards_model(const CutMesh& mesh, const Shape& model) {
   centre *= total > 0 ? 1 / total : 0;
   std::vector<Vec3d> from, to;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    from.push_back(Vec3d(sphere::from_grid(mesh.vertices[v].sphere)));
+    from.emplace_back(sphere::from_grid(mesh.vertices[v].sphere));
     to.push_back(model.positions[v] - centre);
   }
   return best_rotation(from, to, area);

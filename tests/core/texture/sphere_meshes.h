@@ -97,11 +97,16 @@ inline SphereMesh subdivided(const SphereMesh& mesh, int times) {
   return subdivided(fine, times - 1);
 }
 
+// Braces fix the order of the three numbers; an argument list would leave it to the compiler.
+inline Vec3d random_vector(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  return {normal(random), normal(random), normal(random)};
+}
+
 // Rotates all points about a random axis by a random angle.
 inline SphereMesh turned(SphereMesh mesh, std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  const Vec3d x = normalized(Vec3d(normal(random), normal(random), normal(random)));
-  const Vec3d z = normalized(cross(x, Vec3d(normal(random), normal(random), normal(random))));
+  const Vec3d x = normalized(random_vector(random));
+  const Vec3d z = normalized(cross(x, random_vector(random)));
   const Vec3d y = cross(z, x);
   for (Vec3d& p : mesh.points) p = x * p.x + y * p.y + z * p.z;
   return mesh;
@@ -109,7 +114,6 @@ inline SphereMesh turned(SphereMesh mesh, std::mt19937& random) {
 
 // Moves each vertex at random as far as its triangles allow, `fraction` of the way: slivers come with 1.
 inline SphereMesh jittered(SphereMesh mesh, double fraction, std::mt19937& random) {
-  std::normal_distribution<double> normal;
   std::vector<std::vector<std::size_t>> star(mesh.points.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (const Index v : mesh.triangles[t]) star[v].push_back(t);
@@ -122,7 +126,7 @@ inline SphereMesh jittered(SphereMesh mesh, double fraction, std::mt19937& rando
   };
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     const Vec3d before = mesh.points[v];
-    const Vec3d direction(normal(random), normal(random), normal(random));
+    const Vec3d direction = random_vector(random);
     for (double step = fraction; step > 1e-7; step /= 2) {
       mesh.points[v] = normalized(before + direction * step);
       if (valid(v)) break;
