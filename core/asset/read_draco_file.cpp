@@ -1,0 +1,100 @@
+#include "core/asset/read_draco_file.h"
+
+#include "core/asset/document.h"
+#include "core/asset/draco_decoder.h"
+#include "core/asset/load_document.h"
+
+namespace orbis::asset {
+namespace {
+
+using Use = DracoMesh::Use;
+
+// How many attributes of each use have been named.
+struct Counts {
+  std::uint32_t texcoords = 0, colors = 0, generics = 0;
+  bool position = false, normal = false;
+};
+
+bool is_color_type(ComponentType type) {
+  return type == ComponentType::u8 || type == ComponentType::u16 || type == ComponentType::f32;
+}
+
+// The glTF attribute that holds a Draco one; its values come later. Attributes with more than four components have no
+// place in glTF.
+std::optional<Attribute> named(const DracoMesh::Info& info, Counts& counts) {
+  if (info.components < 1 || info.components > 4) return std::nullopt;
+  const std::uint32_t n = info.components;
+  if (info.use == Use::position && n == 3 && !counts.position) {
+    counts.position = true;
+    return Attribute{"POSITION", ComponentType::f32, false, 3, {}};
+  }
+  if (info.use == Use::normal && n == 3 && !counts.normal) {
+    counts.normal = true;
+    return Attribute{"NORMAL", ComponentType::f32, false, 3, {}};
+  }
+  if (info.use == Use::texcoord && n == 2 && info.type == ComponentType::f32) {
+    return Attribute{"TEXCOORD_" + std::to_string(counts.texcoords++), info.type, false, 2, {}};
+  }
+  if (info.use == Use::color && n >= 3 && is_color_type(info.type)) {
+    return Attribute{"COLOR_" + std::to_string(counts.colors++), info.type, info.type != ComponentType::f32, n, {}};
+  }
+  // glTF has no vertex attributes of 32-bit integers.
+  const ComponentType type = info.type == ComponentType::u32 ? ComponentType::f32 : info.type;
+  return Attribute{
+      "_GENERIC_" + std::to_string(counts.generics++), type, info.normalized && type != ComponentType::f32, n, {}};
+}
+
+Primitive read_primitive(const DracoMesh& mesh, const Limits& limits, std::vector<Asset::Note>& notes) {
+  Primitive out;
+  out.indices = mesh.indices();
+  Counts counts;
+  std::uint64_t bytes = 0;
+  for (const DracoMesh::Info& info : mesh.attributes()) {
+    auto attribute = named(info, counts);
+    if (!attribute) {
+      notes.push_back({"attribute-dropped",
+                       "attribute " + std::to_string(info.id) + " has " + std::to_string(info.components) +
+                           " components; glTF holds at most 4, so it is not carried over",
+                       ""});
+      continue;
+    }
+    if (attribute->type != info.type || !info.exact) {
+      notes.push_back({"attribute-converted", attribute->name + " is stored as float, which glTF asks for", ""});
+    }
+    bytes += mesh.vertex_count() * info.components * size_of(attribute->type);
+    if (bytes > max_decoded_bytes(limits)) {
+      throw Error(ErrorCode::too_large, "the asset has more than the limit of " +
+                                            std::to_string(max_decoded_bytes(limits)) + " bytes of vertex data");
+    }
+    attribute->data = mesh.values(info.id, attribute->type, info.components);
+    out.attributes.push_back(std::move(*attribute));
+  }
+  if (!counts.position) throw Error(ErrorCode::invalid_geometry, "the Draco mesh has no positions");
+  return out;
+}
+
+// One node that shows one mesh; write_asset fills in the primitive.
+Json empty_document() {
+  Json document;
+  document["asset"]["version"] = "2.0";
+  document["scene"] = 0;
+  document["scenes"] = Json::array({Json{{"nodes", Json::array({0})}}});
+  document["nodes"] = Json::array({Json{{"mesh", 0}}});
+  document["meshes"] =
+      Json::array({Json{{"primitives", Json::array({Json{{"attributes", Json::object()}, {"mode", 4}}})}}});
+  return document;
+}
+
+} // namespace
+
+Asset read_draco_file(std::span<const std::byte> bytes, const Limits& limits) {
+  Asset asset;
+  asset.format = Format::draco;
+  asset.primitives.push_back(read_primitive(DracoMesh(bytes, limits, {}), limits, asset.notes));
+  auto document = std::make_shared<Document>();
+  document->json = empty_document();
+  asset.document = std::move(document);
+  return asset;
+}
+
+} // namespace orbis::asset

@@ -1,0 +1,168 @@
+#include <algorithm>
+#include <set>
+
+#include "core/asset/asset.h"
+#include "core/asset/draco_encoder.h"
+#include "core/asset/extensions.h"
+#include "core/asset/materials.h"
+#include "core/asset/output.h"
+
+namespace orbis::asset {
+namespace {
+
+void erase_extension(Json& owner, std::string_view name) {
+  Json* extensions = find(owner, "extensions");
+  if (!extensions) return;
+  extensions->erase(std::string(name));
+  if (extensions->empty()) owner.erase("extensions");
+}
+
+Json write_attributes(Output& out, std::span<const Attribute> attributes) {
+  Json json = Json::object();
+  for (const Attribute& attribute : attributes) json[attribute.name] = out.add_attribute(attribute);
+  return json;
+}
+
+// Indices and attributes, plain or compressed. Morph targets stay outside of the Draco data, as the extension asks.
+void write_geometry(Output& out, Json& primitive, const NewPrimitive& source, Compression compression) {
+  const std::size_t vertices = source.attributes.front().count();
+  if (compression == Compression::none || !can_be_draco(source.indices, source.attributes)) {
+    primitive["attributes"] = write_attributes(out, source.attributes);
+    primitive["indices"] = out.add_indices(source.indices, vertices);
+    return;
+  }
+  Json accessors = Json::object(), ids = Json::object();
+  for (std::size_t i = 0; i < source.attributes.size(); ++i) {
+    accessors[source.attributes[i].name] = out.add_accessor(accessor_of(source.attributes[i]));
+    ids[source.attributes[i].name] = i;
+  }
+  primitive["attributes"] = std::move(accessors);
+  primitive["indices"] = out.add_accessor(accessor_of_indices(source.indices.size(), vertices));
+  const std::size_t view = out.add_view(encode_draco(source.indices, source.attributes));
+  primitive["extensions"][std::string(draco_extension)] = Json{{"bufferView", view}, {"attributes", std::move(ids)}};
+}
+
+void replace_primitive(Output& out, const Primitive& old, const NewPrimitive& source, Compression compression) {
+  // A copy, since views and accessors that are added may move the document's parts.
+  Json primitive = out.json["meshes"][old.mesh]["primitives"][old.primitive];
+  // These describe the old vertices by their numbers.
+  erase_extension(primitive, draco_extension);
+  erase_extension(primitive, "CESIUM_primitive_outline");
+  erase_extension(out.json["meshes"][old.mesh], "EXT_mesh_manifold");
+  write_geometry(out, primitive, source, compression);
+  primitive.erase("mode"); // triangles are the default
+  if (source.targets.empty()) {
+    primitive.erase("targets");
+  } else {
+    Json targets = Json::array();
+    for (const auto& target : source.targets) targets.push_back(write_attributes(out, target));
+    primitive["targets"] = std::move(targets);
+  }
+  out.json["meshes"][old.mesh]["primitives"][old.primitive] = std::move(primitive);
+}
+
+template <class T> std::size_t append(Json& json, const char* array, T item) {
+  if (!json[array].is_array()) json[array] = Json::array();
+  json[array].push_back(std::move(item));
+  return json[array].size() - 1;
+}
+
+// The atlas as a texture: trilinear, and clamped since its charts touch no border.
+std::size_t add_atlas(Output& out, const NewImage& atlas) {
+  const std::size_t view = out.add_view(atlas.bytes);
+  const std::size_t image =
+      append(out.json, "images", Json{{"name", "atlas"}, {"mimeType", atlas.mime_type}, {"bufferView", view}});
+  const std::size_t sampler =
+      append(out.json, "samplers", Json{{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 33071}, {"wrapT", 33071}});
+  return append(out.json, "textures", Json{{"name", "atlas"}, {"sampler", sampler}, {"source", image}});
+}
+
+// A GLB holds its images; a URI stays only where the image did not come, or is in a format that has no media type in
+// glTF.
+void embed_images(Output& out, const Document& document) {
+  for (const auto& [number, bytes] : document.images) {
+    const std::string_view type = image_type(bytes);
+    if (type.empty()) continue;
+    Json& image = out.json["images"][number];
+    image.erase("uri");
+    image["mimeType"] = type;
+    image["bufferView"] = out.add_view(bytes);
+  }
+}
+
+bool is_quantised(std::span<const Attribute> attributes) {
+  return std::any_of(attributes.begin(), attributes.end(), [](const Attribute& a) {
+    return a.type != ComponentType::f32 && (a.name == "POSITION" || a.name == "NORMAL" || a.name == "TANGENT");
+  });
+}
+
+void require(Json& json, std::string_view extension) {
+  for (const auto list : {"extensionsUsed", "extensionsRequired"}) {
+    const Json* names = find(json, list);
+    if (!names || std::find(names->begin(), names->end(), extension) == names->end()) append(json, list, extension);
+  }
+}
+
+// Extensions that the result no longer uses are taken off the lists, and those that it came to need are put on.
+void update_extensions(Json& json, const Json& before, std::span<const NewPrimitive> primitives) {
+  const std::set<std::string> used = extension_objects(json);
+  std::set<std::string> gone;
+  for (const std::string& name : extension_objects(before)) {
+    if (!used.contains(name)) gone.insert(name);
+  }
+  for (const auto list : {"extensionsUsed", "extensionsRequired"}) {
+    Json* names = find(json, list);
+    if (!names) continue;
+    Json kept = Json::array();
+    for (const Json& name : *names) {
+      if (!gone.contains(name.get<std::string>())) kept.push_back(name);
+    }
+    if (kept.empty()) {
+      json.erase(list);
+    } else {
+      *names = std::move(kept);
+    }
+  }
+  if (used.contains(std::string(draco_extension))) require(json, draco_extension);
+  const bool quantised = std::any_of(primitives.begin(), primitives.end(), [](const NewPrimitive& p) {
+    return is_quantised(p.attributes) ||
+           std::any_of(p.targets.begin(), p.targets.end(), [](const auto& t) { return is_quantised(t); });
+  });
+  if (quantised) require(json, quantization_extension);
+}
+
+void write_extras(Json& json, std::string_view text) {
+  Json facts = Json::parse(text, nullptr, false);
+  if (!facts.is_object()) throw Error(ErrorCode::internal, "the facts for asset.extras are not a JSON object");
+  Json& extras = json["asset"]["extras"];
+  // Extras of the input that are no object can take no member: they become one.
+  if (!extras.is_object()) extras = extras.is_null() ? Json::object() : Json{{"input", extras}};
+  Json& orbis = extras["orbis"];
+  if (!orbis.is_object()) orbis = Json::object();
+  orbis.update(facts);
+}
+
+} // namespace
+
+Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, const NewImage& atlas,
+                  std::string_view extras_json, Compression compression) {
+  if (primitives.size() != asset.primitives.size()) {
+    throw Error(ErrorCode::internal, "there must be one new primitive for each of the asset's");
+  }
+  const Document& document = *asset.document;
+  Output out(document);
+  embed_images(out, document);
+  std::vector<AtlasUser> users;
+  for (std::size_t i = 0; i < primitives.size(); ++i) {
+    const Primitive& old = asset.primitives[i];
+    replace_primitive(out, old, primitives[i], compression);
+    users.push_back({old.mesh, old.primitive, primitives[i].atlas_texcoord});
+  }
+  assign_atlas(out.json, add_atlas(out, atlas), users);
+  if (!document.keeps_numbers) out.drop_unreferenced();
+  update_extensions(out.json, document.json, primitives);
+  write_extras(out.json, extras_json);
+  return out.glb();
+}
+
+} // namespace orbis::asset
