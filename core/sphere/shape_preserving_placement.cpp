@@ -47,4 +47,12 @@ Vec3d moebius(const Vec3d& x, const Vec3d& a) {
   return normalized(d * ((1 - squared_norm(a)) / squared_norm(d)) - a);
 }
 
+bool survives_rounding(std::span<const mesh::Triangle> triangles, std::span<const Vec3d> points) {
+  return std::all_of(triangles.begin(), triangles.end(), [&](const mesh::Triangle& t) {
+    const Vec3d &p = points[t[0]], &q = points[t[1]], &r = points[t[2]];
+    const double longest2 = std::max({squared_norm(q - p), squared_norm(r - q), squared_norm(p - r)});
+    return orientation_volume(p, q, r) > 0x1p-22 * std::sqrt(longest2);
+  });
+}
+
 } // namespace orbis::sphere

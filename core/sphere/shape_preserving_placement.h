@@ -1,10 +1,12 @@
 // Where points go that are not relaxed: the first four, a vertex just split off, and all of them when the sphere is
-// turned inside itself to make room on one side.
+// turned inside itself to make room on one side. And whether they can be delivered there.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <span>
 
+#include "core/mesh/triangle_mesh.h"
 #include "core/sphere/shape_preserving_star.h"
 
 namespace orbis::sphere {
@@ -26,5 +28,10 @@ namespace orbis::sphere {
 // The Moebius map of the sphere that moves the point a inside the ball to its centre. Conformal: it keeps the shapes of
 // small triangles, and gives the side towards a more room.
 [[nodiscard]] Vec3d moebius(const Vec3d& x, const Vec3d& a);
+
+// Whether every triangle surely stays positively oriented when its corners are rounded to multiples of 2^-24, as they
+// are delivered: V > 2^-22 times the longest edge. Rounding moves a corner p by at most sqrt(3) 2^-25, and V by that
+// times |q x r| <= |q - r| for each corner: by less than 2^-22 times the longest edge in all.
+[[nodiscard]] bool survives_rounding(std::span<const mesh::Triangle> triangles, std::span<const Vec3d> points);
 
 } // namespace orbis::sphere

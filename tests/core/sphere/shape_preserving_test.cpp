@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <random>
 #include <set>
 #include <string>
 #include <vector>
@@ -323,6 +324,33 @@ TEST_CASE("a Moebius map keeps the sphere, and moves the given point to the cent
   CHECK(norm(moebius(-normalized(a), a) + normalized(a)) < 1e-12);
   CHECK(std::abs(norm(moebius(normalized(Vec3d(1, 2, 3)), a)) - 1) < 1e-15);
   CHECK(norm(moebius(moebius(Vec3d(0, 1, 0), a), -a) - Vec3d(0, 1, 0)) < 1e-12); // the inverse
+}
+
+TEST_CASE("what is said to survive rounding does, also where the margin is thin") {
+  std::mt19937 random(5);
+  const auto coordinate = [&] { return static_cast<double>(random() % 2001) / 1000 - 1; };
+  int said = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3d p = normalized(Vec3d(coordinate(), coordinate(), 1.5));
+    const TangentBasis basis = tangent_basis(p);
+    // A thin triangle, of some multiples of 2^-24 in height, along e1.
+    const double length = std::exp2(-10 * std::abs(coordinate())), height = 0x1p-24 * 8 * coordinate();
+    const std::vector<Vec3d> points{p, normalized(p + basis.e1 * length),
+                                    normalized(p + basis.e1 * (0.4 * length) + basis.e2 * height)};
+    const TriangleMesh one{{}, {{0, 1, 2}}};
+    if (!survives_rounding(one.triangles, points)) continue;
+    ++said;
+    CHECK(folded_on_grid(one, points) == 0);
+  }
+  CHECK(said > 100);
+  CHECK(said < 1000);
+}
+
+TEST_CASE("every map that is delivered survives rounding, with a proof") {
+  for (const TriangleMesh& mesh : {test::cross(), shapes::RandomTriangulation(2).make(800, 0), shapes::bipyramid(300),
+                                   shapes::tube(200, 3, 600)}) {
+    CHECK(survives_rounding(mesh.triangles, embed(mesh).points));
+  }
 }
 
 TEST_CASE("progress rises to its total in each stage, and the stages follow each other") {
