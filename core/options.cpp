@@ -9,9 +9,10 @@
 namespace orbis {
 namespace {
 
-constexpr std::array<OptionInfo, 8> table{{
+constexpr std::array<OptionInfo, 9> table{{
     {"objective", "isometric | shape-preserving", "isometric",
      "what the map keeps: lengths as far as possible, or the paper's shape-preserving weights"},
+    {"quality", "draft | standard | high", "standard", "isometric only: time against closeness to the least energy"},
     {"threshold", "a number in (0, 1)", "0.995",
      "shape-preserving only: relaxation stops when the best local improvement is above this"},
     {"texture", "auto | pattern | cubemap | base_color", "auto",
@@ -55,6 +56,7 @@ E choice(std::string_view name, std::string_view text, const std::array<std::str
 }
 
 constexpr std::array<std::string_view, 2> objectives{"isometric", "shape-preserving"};
+constexpr std::array<std::string_view, 3> qualities{"draft", "standard", "high"};
 constexpr std::array<std::string_view, 4> sources{"auto", "pattern", "cubemap", "base_color"};
 constexpr std::array<std::string_view, 2> formats{"png", "jpeg"};
 constexpr std::array<std::string_view, 2> compressions{"none", "draco"};
@@ -77,6 +79,8 @@ std::span<const OptionInfo> option_table() { return table; }
 void set_option(Options& options, std::string_view name, std::string_view value) {
   if (name == "objective") {
     options.objective = choice<Objective>(name, value, objectives);
+  } else if (name == "quality") {
+    options.quality = choice<Quality>(name, value, qualities);
   } else if (name == "threshold") {
     const double t = number<double>(name, value, 0.0, 1.0);
     if (t <= 0.0 || t >= 1.0) refuse(name, value);
@@ -100,6 +104,7 @@ void set_option(Options& options, std::string_view name, std::string_view value)
 
 std::string get_option(const Options& options, std::string_view name) {
   if (name == "objective") return text_of(options.objective, objectives);
+  if (name == "quality") return text_of(options.quality, qualities);
   if (name == "threshold") return text_of(options.threshold);
   if (name == "texture") return text_of(options.texture, sources);
   if (name == "texture_size") return std::to_string(options.texture_size);

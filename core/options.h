@@ -10,12 +10,15 @@
 namespace orbis {
 
 enum class Objective { isometric, shape_preserving };
+enum class Quality { draft, standard, high };
 enum class TextureSource { automatic, pattern, cubemap, base_color };
 enum class TextureFormat { png, jpeg };
 enum class Compression { none, draco };
 
 struct Options {
   Objective objective = Objective::isometric;
+  // isometric only: how close to the least energy the map is brought.
+  Quality quality = Quality::standard;
   // shape-preserving only: relaxation stops when the best local improvement ds(p*)/ds(p) is above this (paper: 0.995).
   double threshold = 0.995;
   // automatic: the model's own base colour where it has one that came with the request, else the test pattern.

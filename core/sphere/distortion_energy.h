@@ -46,6 +46,15 @@ inline StarTerm make_term(const Vec3d& a, const Vec3d& b, const Reference& refer
           area * area};
 }
 
+// The terms of the star of v; `star` is overwritten.
+inline void gather_star(mesh::Index v, const StarTable& stars, std::span<const Reference> references,
+                        std::span<const Vec3d> points, std::vector<StarTerm>& star) {
+  star.clear();
+  for (const StarCorner& c : stars[v]) {
+    star.push_back(make_term(points[c.next], points[c.previous], references[c.slot()], c.corner % 3));
+  }
+}
+
 // E of the star of p; infinite where a triangle is not positively oriented. p: unit length.
 inline double star_energy(std::span<const StarTerm> star, const Vec3d& p) {
   double sum = 0;

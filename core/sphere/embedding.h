@@ -26,8 +26,10 @@ struct Embedding {
 [[nodiscard]] Embedding embed_shape_preserving(const mesh::TriangleMesh& mesh, double threshold, Progress& progress);
 
 // The default: symmetric Dirichlet energy on a hierarchy of independent vertex removals: see isometric.cpp.
-// Same requirements. The result does not depend on `threads` (0: as many as the machine has).
-[[nodiscard]] Embedding embed_isometric(const mesh::TriangleMesh& mesh, std::uint32_t threads, Progress& progress);
+// Same requirements. quality: how many Newton steps of the whole map follow the hierarchy. The result does not depend
+// on `threads` (0: as many as the machine has).
+[[nodiscard]] Embedding embed_isometric(const mesh::TriangleMesh& mesh, Quality quality, std::uint32_t threads,
+                                        Progress& progress);
 
 // The paper's "Minimum", Eq. 3: sum over vertices of sum_j w_ij theta_ij^2, with Floater's (1997) weights of the mesh.
 [[nodiscard]] double shape_preserving_energy(const mesh::TriangleMesh& mesh, const std::vector<Vec3d>& points);

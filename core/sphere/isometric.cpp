@@ -6,12 +6,17 @@
 // A vertex whose step gains little falls asleep until a neighbour's move wakes it, so the work goes where the map is
 // bad. Low frequencies move on coarse levels, where a sweep costs little.
 //
+// What is left then is the difference between coarse and fine geometry, which is smooth: a few Newton steps of all
+// vertices together take most of it away (global_step.h).
+//
 // Everything is done in an order that does not depend on the number of threads.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "core/sphere/embedding.h"
+#include "core/sphere/global_step.h"
+#include "core/sphere/hierarchical_basis.h"
 #include "core/sphere/hierarchy.h"
 #include "core/sphere/insertion.h"
 #include "core/sphere/reference.h"
@@ -32,20 +37,43 @@ constexpr double sweep_budget = 20'000; // vertices times sweeps
 constexpr double fewest_sweeps = 8, most_sweeps = 50;
 // A step is worthwhile where it gains this part of the star's energy; less on levels of fewer than 2,000 vertices.
 constexpr double worthwhile_gain = 0.01, smallest_gain = 1e-4, small_level = 2'000;
-constexpr std::uint32_t final_sweeps = 200; // of ever fewer vertices
+// At the end of a stage, over ever fewer vertices.
+constexpr std::uint32_t final_sweeps = 200;
 constexpr double final_gain = 0.003;
+
+// Newton steps of all vertices together on the finest level, at most so many, of so many iterations of the linear
+// solver each. They end when one gains less than `enough`. After each the vertices that it brought close to a fold move
+// by themselves.
+struct Effort {
+  int steps;
+  std::uint32_t iterations;
+  double enough;
+};
+
+constexpr Effort effort_of(Quality quality) {
+  switch (quality) {
+  case Quality::draft:
+    return {0, 0, 0};
+  case Quality::standard:
+    return {4, 20, 3e-3};
+  case Quality::high:
+    break;
+  }
+  return {60, 60, 2e-4};
+}
 
 class Refinement {
 public:
   Refinement(Hierarchy hierarchy, std::vector<Vec3d> positions, mesh::ThreadPool& pool);
   void refine(Progress& progress);
-  void optimise(Progress& progress);
+  void optimise(const Effort& effort, Progress& progress);
   [[nodiscard]] std::vector<Vec3d> points() && { return std::move(points_); }
   std::uint64_t relaxations = 0;
   bool converged = true;
 
 private:
   void insert_round(std::size_t round);
+  void keep_stiffness(std::size_t round);
   void insert(std::size_t removal);
   void prepare_level(double regularisation);
   // Sweeps over what is active, all at first. Returns whether no step is worthwhile any more.
@@ -61,12 +89,13 @@ private:
   std::vector<Reference> references_; // by slot
   StarTable stars_;
   Active active_;
+  HierarchicalBasis basis_;
   Coloring coloring_;
 };
 
 Refinement::Refinement(Hierarchy hierarchy, std::vector<Vec3d> positions, mesh::ThreadPool& pool)
     : hierarchy_(std::move(hierarchy)), positions_(std::move(positions)), pool_(pool), points_(positions_.size()),
-      references_(hierarchy_.triangles.size()), active_(positions_.size(), 0) {
+      references_(hierarchy_.triangles.size()), active_(positions_.size(), 0), basis_(hierarchy_, pool) {
   vertices_.assign(hierarchy_.tetrahedron.begin(), hierarchy_.tetrahedron.end());
   slots_.assign(hierarchy_.tetrahedron_slots.begin(), hierarchy_.tetrahedron_slots.end());
   const mesh::Triangle& t = hierarchy_.triangles[slots_[0]];
@@ -126,15 +155,37 @@ void Refinement::refine(Progress& progress) {
     const auto live = static_cast<double>(vertices_.size());
     relax(static_cast<std::uint32_t>(std::clamp(sweep_budget / live, fewest_sweeps, most_sweeps)),
           std::clamp(worthwhile_gain * live / small_level, smallest_gain, worthwhile_gain), progress);
+    keep_stiffness(round);
     progress.report(Stage::refine, vertices_.size(), points_.size());
   }
 }
 
-void Refinement::optimise(Progress& progress) {
-  progress.report(Stage::optimise, 0, 1);
+// Of the tetrahedron with the first round, later of the round's vertices: at the level that they were inserted at.
+void Refinement::keep_stiffness(std::size_t round) {
+  const std::uint32_t begin = hierarchy_.round_first[round], end = hierarchy_.round_first[round + 1];
+  std::vector<StarTerm> star;
+  const auto keep = [&](Index v) {
+    gather_star(v, stars_, references_, points_, star);
+    basis_.keep_stiffness(v, expand(star, points_[v], TangentFrame(points_[v])), points_[v]);
+  };
+  for (std::uint32_t i = begin; i < end; ++i) keep(hierarchy_.removed[i]);
+  if (round + 1 == hierarchy_.rounds()) std::ranges::for_each(hierarchy_.tetrahedron, keep);
+}
+
+void Refinement::optimise(const Effort& effort, Progress& progress) {
+  const auto total = static_cast<std::uint64_t>(effort.steps) + 1;
+  progress.report(Stage::optimise, 0, total);
   if (hierarchy_.rounds() == 0) prepare_level(fine_regularisation); // the input is a tetrahedron
   converged = relax(final_sweeps, final_gain, progress);
-  progress.report(Stage::optimise, 1, 1);
+  GlobalStep global({hierarchy_.triangles, stars_, references_}, basis_, pool_);
+  for (int i = 0; i < effort.steps && hierarchy_.rounds() > 0; ++i) {
+    progress.report(Stage::optimise, static_cast<std::uint64_t>(i) + 1, total);
+    progress.check();
+    const double gain = global.take(effort.iterations, points_);
+    converged = relax(final_sweeps, final_gain, progress) && gain < effort.enough;
+    if (gain < effort.enough) break;
+  }
+  progress.report(Stage::optimise, total, total);
 }
 
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
@@ -143,7 +194,7 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
 
 } // namespace
 
-Embedding embed_isometric(const mesh::TriangleMesh& mesh, std::uint32_t threads, Progress& progress) {
+Embedding embed_isometric(const mesh::TriangleMesh& mesh, Quality quality, std::uint32_t threads, Progress& progress) {
   mesh::ThreadPool pool(threads);
   Embedding out;
   auto start = std::chrono::steady_clock::now();
@@ -154,7 +205,7 @@ Embedding embed_isometric(const mesh::TriangleMesh& mesh, std::uint32_t threads,
   refinement.refine(progress);
   out.t2_ms = milliseconds_since(start);
   start = std::chrono::steady_clock::now();
-  refinement.optimise(progress);
+  refinement.optimise(effort_of(quality), progress);
   out.t3_ms = milliseconds_since(start);
   out.relaxations = refinement.relaxations;
   out.converged = refinement.converged;

@@ -10,13 +10,6 @@ constexpr std::size_t vertex_grain = 512;
 constexpr std::size_t triangle_grain = 4096;
 constexpr std::uint8_t uncolored = 255;
 
-void gather(mesh::Index v, const Level& level, std::span<const Vec3d> points, std::vector<StarTerm>& star) {
-  star.clear();
-  for (const StarCorner& c : level.stars[v]) {
-    star.push_back(make_term(points[c.next], points[c.previous], level.references[c.slot()], c.corner % 3));
-  }
-}
-
 } // namespace
 
 // Greedy, in the order of the vertices: few classes (7 or 8 on usual meshes), and always the same ones.
@@ -58,7 +51,7 @@ std::size_t relax_active(const Level& level, double worthwhile, std::span<Vec3d>
       for (std::size_t i = begin; i < end; ++i) {
         const mesh::Index v = members[i];
         if (active[v] == 0) continue;
-        gather(v, level, points, star);
+        gather_star(v, level.stars, level.references, points, star);
         double gain = 0;
         points[v] = newton_step(star, points[v], gain);
         ++moved;
@@ -73,13 +66,13 @@ std::size_t relax_active(const Level& level, double worthwhile, std::span<Vec3d>
   return moves;
 }
 
-double total_energy(std::span<const mesh::Triangle> triangles, std::span<const std::uint32_t> live,
-                    std::span<const Reference> references, std::span<const Vec3d> points, mesh::ThreadPool& pool) {
-  return pool.sum_blocks(live.size(), triangle_grain, [&](std::size_t begin, std::size_t end) {
+double total_energy(std::span<const mesh::Triangle> triangles, std::span<const Reference> references,
+                    std::span<const Vec3d> points, mesh::ThreadPool& pool) {
+  return pool.sum_blocks(triangles.size(), triangle_grain, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      const mesh::Triangle& t = triangles[live[i]];
-      const StarTerm term = make_term(points[t[1]], points[t[2]], references[live[i]], 0);
+      const mesh::Triangle& t = triangles[i];
+      const StarTerm term = make_term(points[t[1]], points[t[2]], references[i], 0);
       sum += star_energy(std::span(&term, 1), points[t[0]]);
     }
     return sum;

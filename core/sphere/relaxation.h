@@ -39,9 +39,8 @@ using Active = std::vector<std::uint8_t>;
 std::size_t relax_active(const Level& level, double worthwhile, std::span<Vec3d> points, Active& active,
                          mesh::ThreadPool& pool);
 
-// The energy of the whole map: sum over triangles of E, 4 pi where isometric.
-[[nodiscard]] double total_energy(std::span<const mesh::Triangle> triangles, std::span<const std::uint32_t> live,
-                                  std::span<const Reference> references, std::span<const Vec3d> points,
-                                  mesh::ThreadPool& pool);
+// The energy of the whole map: sum over all triangles of E, 4 pi where isometric, infinite where one is folded.
+[[nodiscard]] double total_energy(std::span<const mesh::Triangle> triangles, std::span<const Reference> references,
+                                  std::span<const Vec3d> points, mesh::ThreadPool& pool);
 
 } // namespace orbis::sphere

@@ -26,6 +26,10 @@ public:
   [[nodiscard]] std::span<const StarCorner> operator[](mesh::Index v) const {
     return std::span(corners_).subspan(first_[v], first_[v + 1] - first_[v]);
   }
+  [[nodiscard]] std::size_t corners() const { return corners_.size(); }
+  [[nodiscard]] std::size_t first(mesh::Index v) const {
+    return first_[v];
+  } // place of v's first corner in the whole table
   [[nodiscard]] std::uint32_t degree(mesh::Index v) const { return first_[v + 1] - first_[v]; }
 
 private:

@@ -26,7 +26,7 @@ Vec3d turned(const Vec3d& p, double angle) {
 std::vector<Vec3d> embed(const Surface& surface, const Options& options, Progress& progress, Report& report) {
   sphere::Embedding embedding = options.objective == Objective::shape_preserving
                                     ? sphere::embed_shape_preserving(surface.mesh, options.threshold, progress)
-                                    : sphere::embed_isometric(surface.mesh, options.threads, progress);
+                                    : sphere::embed_isometric(surface.mesh, options.quality, options.threads, progress);
   report.t1_ms = embedding.t1_ms;
   report.t2_ms = embedding.t2_ms;
   report.t3_ms = embedding.t3_ms;

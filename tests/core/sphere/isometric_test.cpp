@@ -16,7 +16,7 @@ namespace {
 
 std::vector<Vec3f> delivered(const TriangleMesh& m, std::uint32_t threads = 1) {
   NoProgress progress;
-  const sphere::Embedding e = sphere::embed_isometric(m, threads, progress);
+  const sphere::Embedding e = sphere::embed_isometric(m, Quality::standard, threads, progress);
   const sphere::Snapped snapped = sphere::snap(e.points, m.triangles);
   std::vector<Vec3f> out;
   for (const sphere::GridPoint& p : snapped.points) out.push_back(sphere::from_grid(p));
@@ -129,11 +129,11 @@ TEST_CASE("a sphere is mapped almost isometrically") {
 
 TEST_CASE("progress is monotonic and cancellation ends the work") {
   Recorder recorder;
-  CHECK(sphere::embed_isometric(shapes::bumpy_sphere(4), 1, recorder).points.size() == 1026);
+  CHECK(sphere::embed_isometric(shapes::bumpy_sphere(4), Quality::high, 1, recorder).points.size() == 1026);
   for (const int reports : {1, 5, 20}) {
     CancelsAfter progress(reports);
     try {
-      static_cast<void>(sphere::embed_isometric(shapes::bumpy_sphere(5), 1, progress));
+      static_cast<void>(sphere::embed_isometric(shapes::bumpy_sphere(5), Quality::standard, 1, progress));
       FAIL("the embedding went on after it was canceled");
     } catch (const Error& e) {
       CHECK(e.code() == ErrorCode::canceled);

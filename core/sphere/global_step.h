@@ -1,0 +1,45 @@
+// One Newton step of all vertices together: it moves the low frequencies, which local steps hardly see.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/mesh/thread_pool.h"
+#include "core/sphere/hierarchical_basis.h"
+#include "core/sphere/reference.h"
+#include "core/sphere/star_table.h"
+#include "core/sphere/tangent_hessian.h"
+
+namespace orbis::sphere {
+
+// The finest level: every vertex and every triangle is live.
+struct FinestLevel {
+  std::span<const mesh::Triangle> triangles;
+  const StarTable& stars;
+  std::span<const Reference> references;
+};
+
+class GlobalStep {
+public:
+  GlobalStep(const FinestLevel& level, HierarchicalBasis& basis, mesh::ThreadPool& pool);
+
+  // Solves for the Newton direction by preconditioned conjugate gradients (at most `most_iterations`; ends where the
+  // residual has fallen to a twentieth in the preconditioner's norm), then goes along it: the whole way, or half of it
+  // and so on, until the energy falls, which also says that no triangle folds. Returns the part of the energy that was
+  // gained, 0 where no step helps; the points then stay.
+  double take(std::uint32_t most_iterations, std::span<Vec3d> points);
+
+private:
+  void solve(std::uint32_t most_iterations);
+  [[nodiscard]] double energy(std::span<const Vec3d> points);
+
+  FinestLevel level_;
+  HierarchicalBasis& basis_;
+  mesh::ThreadPool& pool_;
+  TangentHessian hessian_;
+  std::vector<Tangent> residual_, step_, direction_, image_, preconditioned_;
+  std::vector<Vec3d> trial_;
+};
+
+} // namespace orbis::sphere
