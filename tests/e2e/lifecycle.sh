@@ -69,8 +69,8 @@ test_a_body_above_the_limit_is_a_413_that_says_the_limit() {
 }
 
 test_a_job_above_its_time_limit_fails_alone() {
-  start_service slow --workers 1 --job-seconds 1
-  QUERY='objective=shape-preserving' post "$models/egg-327680.glb"
+  start_service slow --workers 1 --job-seconds 5
+  QUERY='objective=shape-preserving&threshold=0.9999' post "$models/egg-327680.glb"
   outcome
   expect_problem 422 out-of-time
   textured after-slow "$models/tetrahedron.glb"
@@ -78,8 +78,8 @@ test_a_job_above_its_time_limit_fails_alone() {
 }
 
 test_a_job_above_its_memory_limit_fails_alone() {
-  start_service narrow --workers 1 --job-memory 200M
-  post "$models/egg-327680.glb"
+  start_service narrow --workers 1 --job-memory 300M
+  QUERY='texture_size=4096' post "$models/egg-327680.glb"
   outcome
   expect_problem 422 out-of-memory
   textured after-narrow "$models/tetrahedron.glb"

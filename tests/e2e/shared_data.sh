@@ -16,7 +16,7 @@ post_model() {
 
 is_textured() {
   post_model "$shared_data/$1"
-  expect_textured "shared-${1//\//-}"
+  expect_textured "shared-$(tr / - <<<"${1%.*}")"
 }
 
 is_refused() {
