@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <thread>
 
 #define CPPHTTPLIB_LISTEN_BACKLOG 512
 #include <httplib.h>
@@ -147,13 +148,14 @@ void send_web_file(const WebFile& file, httplib::Response& response) {
 
 bool is_probe(const std::string& path) { return path == "/livez" || path == "/readyz" || path == "/metrics"; }
 
-// Runs connections on the library's threads, after making room for them.
+// Runs connections on the library's threads, and makes room for those that wait.
 class ConnectionQueue final : public httplib::TaskQueue {
 public:
   ConnectionQueue(Connections& connections, std::size_t threads)
-      : connections_(connections), pool_(std::min<std::size_t>(8, threads), threads, threads) {}
+      : connections_(connections), pool_(std::min<std::size_t>(8, threads), threads),
+        room_maker_([&connections](const std::stop_token& stop) { connections.make_room_until(stop); }) {}
   bool enqueue(std::function<void()> task) override {
-    connections_.make_room();
+    connections_.accepted();
     return pool_.enqueue(std::move(task));
   }
   void shutdown() override { pool_.shutdown(); }
@@ -161,6 +163,7 @@ public:
 private:
   Connections& connections_;
   httplib::ThreadPool pool_;
+  std::jthread room_maker_;
 };
 
 } // namespace
@@ -189,12 +192,9 @@ public:
     set_logger([this](const auto& request, const auto& response) { record(request, response); });
   }
 
-  // A few threads more than connections, so that one that makes room need not wait for the one it replaces.
-  static constexpr std::size_t spare_threads = 8;
-
 private:
   void configure() {
-    new_task_queue = [this] { return new ConnectionQueue(connections_, settings_.connections + spare_threads); };
+    new_task_queue = [this] { return new ConnectionQueue(connections_, settings_.connections); };
     // Not SO_REUSEPORT, the library's default: a second server on the port must fail, not share it.
     set_socket_options([](socket_t socket) {
       const int yes = 1;
@@ -345,9 +345,17 @@ int HttpServer::bind() {
 }
 
 void HttpServer::serve() {
-  if (!impl_->listen_after_bind()) throw Error(ErrorCode::internal, "the server's socket failed");
+  serving_ = true;
+  const bool regular = stopping_ || impl_->listen_after_bind();
+  serving_ = false;
+  if (!regular) throw Error(ErrorCode::internal, "the server's socket failed");
 }
 
-void HttpServer::stop() { impl_->stop(); }
+void HttpServer::stop() {
+  stopping_ = true;
+  // The library forgets a stop that comes before it listens.
+  while (serving_ && !impl_->is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  impl_->stop();
+}
 
 } // namespace orbis::server

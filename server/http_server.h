@@ -1,10 +1,11 @@
 // The HTTP/1.1 front: sockets, uploads to disk, downloads from disk. The only home of cpp-httplib.
 //
-// Each connection has a thread, of which there is a bounded number. Where all are taken, the connection that has been
-// longest without work for us (idle, or slow to send or to read) is closed in favour of the new one, so that slow
+// Each connection has a thread, of which there is a bounded number. Where all are taken and others wait, the
+// connections that have been longest without work for us (idle, or slow to send or to read) are closed, so that slow
 // clients cannot keep probes and others out.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -43,6 +44,7 @@ public:
 private:
   class Impl;
   std::unique_ptr<Impl> impl_;
+  std::atomic<bool> serving_{false}, stopping_{false};
 };
 
 } // namespace orbis::server

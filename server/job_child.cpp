@@ -103,6 +103,7 @@ Error out_of_memory() {
 
 void run_job_child() {
   detach_from_parent();
+  std::signal(SIGXFSZ, SIG_IGN); // a library that prints to a log file must not die of the limit on file sizes
   std::signal(SIGTERM, [](int) { stop_requested.store(true, std::memory_order_relaxed); });
   try {
     run_task();
@@ -115,7 +116,7 @@ void run_job_child() {
     const bool memory = error.code() == std::errc::resource_unavailable_try_again;
     send(error_line(memory ? out_of_memory() : Error(ErrorCode::internal, "the job failed unexpectedly")));
   } catch (const std::exception& error) {
-    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, error.what(), std::string_view(error.what()).size());
+    send(log_line(error.what()));
     send(error_line(Error(ErrorCode::internal, "the job failed unexpectedly")));
   }
   ::_exit(0); // nothing to tidy: no destructor of a library may spoil a finished job

@@ -12,6 +12,7 @@ using api::Json;
 
 // No message is longer, but for the bytes of files.
 constexpr std::size_t max_line = 64 << 10;
+constexpr std::size_t longest_text = 8000; // stays below max_line even where every byte is escaped
 
 [[noreturn]] void broken() { throw Error(ErrorCode::internal, "the job's process sent something unreadable"); }
 
@@ -63,6 +64,11 @@ std::string checked_name(const std::string& name) {
   return name;
 }
 
+std::uint64_t count_from(const Json& json) {
+  if (!json.is_number_unsigned()) broken();
+  return json.get<std::uint64_t>();
+}
+
 Error error_from(const Json& json) {
   const auto code = api::error_code(json.at("code").get<std::string>());
   if (!code) broken();
@@ -106,13 +112,14 @@ std::string file_line(std::string_view name, std::uint64_t bytes) {
 }
 
 std::string error_line(const Error& error) {
-  constexpr std::size_t longest = 8000; // a line must stay below max_line even where every byte is escaped
   return api::dump({{"error",
                      {{"code", api::problem_type(error.code()).slug},
-                      {"message", error.message().substr(0, longest)},
+                      {"message", error.message().substr(0, longest_text)},
                       {"where", error.where().substr(0, 1000)}}}}) +
          "\n";
 }
+
+std::string log_line(std::string_view text) { return api::dump({{"log", text.substr(0, longest_text)}}) + "\n"; }
 
 std::string done_line() { return "{\"done\":true}\n"; }
 
@@ -141,14 +148,16 @@ void MessageParser::take_line() {
   try {
     if (json.contains("progress")) {
       const Json& p = json["progress"];
-      handler_.progress(stage_of(p.at("stage").get<std::string>()), p.at("done").get<std::uint64_t>(),
-                        p.at("total").get<std::uint64_t>());
+      handler_.progress(stage_of(p.at("stage").get<std::string>()), count_from(p.at("done")),
+                        count_from(p.at("total")));
     } else if (json.contains("file")) {
-      file_left_ = json["file"].at("bytes").get<std::uint64_t>();
+      file_left_ = count_from(json["file"].at("bytes"));
       handler_.file_begins(checked_name(json["file"].at("name").get<std::string>()), file_left_);
       if (file_left_ == 0) handler_.file_ends();
     } else if (json.contains("error")) {
       handler_.error(error_from(json["error"]));
+    } else if (json.contains("log")) {
+      handler_.log(json["log"].get<std::string>());
     } else if (json.contains("done")) {
       handler_.done();
     } else {

@@ -5,6 +5,7 @@
 //   {"progress":{"stage":"refine","done":1,"total":2}}
 //   {"file":{"name":"result.glb","bytes":123}}             followed by that many bytes
 //   {"error":{"code":"not-genus-zero","message":"…","where":"…"}}
+//   {"log":"…"}                                            for the operator, not for the client
 //   {"done":true}
 // The child reads untrusted data, so the parent believes nothing that is not one of these.
 #pragma once
@@ -26,6 +27,7 @@ namespace orbis::server {
 [[nodiscard]] std::string progress_line(Stage stage, std::uint64_t done, std::uint64_t total);
 [[nodiscard]] std::string file_line(std::string_view name, std::uint64_t bytes);
 [[nodiscard]] std::string error_line(const Error& error);
+[[nodiscard]] std::string log_line(std::string_view text);
 [[nodiscard]] std::string done_line();
 
 // Cuts the child's output into messages.
@@ -37,6 +39,7 @@ public:
     std::function<void(std::span<const std::byte>)> file_bytes;
     std::function<void()> file_ends;
     std::function<void(const Error&)> error;
+    std::function<void(std::string_view)> log;
     std::function<void()> done;
   };
   explicit MessageParser(Handler handler) : handler_(std::move(handler)) {}

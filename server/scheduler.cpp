@@ -69,7 +69,7 @@ void Scheduler::start() {
       lock.unlock();
       collect_garbage(api::now());
       lock.lock();
-      work_.wait_for(lock, stop, std::chrono::minutes(1), [] { return false; });
+      pause_.wait_for(lock, stop, std::chrono::minutes(1), [] { return false; });
     }
   });
 }

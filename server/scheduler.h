@@ -91,7 +91,8 @@ private:
   UlidSource ids_;
 
   std::mutex mutex_; // guards the store and everything below but the atomics
-  std::condition_variable_any work_, changes_;
+  std::condition_variable_any work_, changes_,
+      pause_; // a job to take; a job that changed; never: to sleep until the end
   std::deque<std::string> queue_;
   std::map<std::string, Live, std::less<>> live_;
   TimeToGoModel time_to_go_;

@@ -1,5 +1,6 @@
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <semaphore>
@@ -25,6 +26,14 @@ FileDescriptor lock_data(const std::filesystem::path& data) {
   return lock;
 }
 
+// Each connection takes a descriptor or two: as many as the system gives.
+void raise_descriptor_limit() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
 } // namespace
 
 int serve(const Config& config) {
@@ -33,6 +42,7 @@ int serve(const Config& config) {
     if (count > 1) ::_exit(1); // what runs is taken up at the next start
     stop_requested.release();
   });
+  raise_descriptor_limit();
   const FileDescriptor lock = lock_data(config.data);
   JobStore store(config.data / "jobs.sqlite");
   BlobStore blobs(config.data);

@@ -182,7 +182,11 @@ public:
         end_(Clock::now() + std::chrono::seconds(task.limits.seconds)), seconds_(task.limits.seconds),
         parser_({hooks.progress, [this](auto name, auto bytes) { files_.begin(name, bytes); },
                  [this](auto bytes) { files_.write(bytes); }, [this] { files_.end(); },
-                 [this](const Error& error) { last_word_ = error; }, [this] { done_ = true; }}) {}
+                 [this](const Error& error) { last_word_ = error; },
+                 [](auto text) {
+                   log_event(Level::error, "job_process", {{"reason", text}});
+                 },
+                 [this] { done_ = true; }}) {}
 
   // Until the child closes its output. Sets why it was stopped, if it was.
   void hold() {

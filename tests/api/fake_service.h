@@ -1,0 +1,98 @@
+// A job service that does what a test tells it to: jobs change only when the test changes them.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <mutex>
+
+#include "api/job_service.h"
+
+namespace orbis::test {
+
+class FakeService final : public api::JobService {
+public:
+  std::map<std::string, api::Job, std::less<>> jobs;
+  std::map<api::JobFile, api::StoredFile> files;
+  std::vector<api::Submission> submissions;
+  bool is_draining = false, is_full = false;
+  // What happens to a submitted job at once.
+  std::function<void(api::Job&)> on_submit = [](api::Job&) {};
+  // What happens to a job while someone waits for it.
+  std::function<void(api::Job&)> on_wait = [](api::Job&) {};
+
+  api::Job submit(api::Submission submission) override {
+    api::Job job;
+    job.id = "01J0000000000000000000000" + std::to_string(jobs.size() % 10);
+    job.created = api::Time(std::chrono::milliseconds(1'700'000'000'123));
+    job.options = submission.options;
+    job.input = {std::string(64, 'a'), submission.model.bytes, std::nullopt};
+    job.queue_position = 1;
+    job.version = 1;
+    submissions.push_back(std::move(submission));
+    on_submit(job);
+    return jobs[job.id] = job;
+  }
+  std::optional<api::Job> find(std::string_view id) override {
+    const auto it = jobs.find(id);
+    return it == jobs.end() ? std::nullopt : std::optional(it->second);
+  }
+  std::optional<api::Job> wait(std::string_view id, std::uint64_t, std::chrono::milliseconds) override {
+    const auto it = jobs.find(id);
+    if (it == jobs.end()) return std::nullopt;
+    on_wait(it->second);
+    return it->second;
+  }
+  api::JobPage list(const api::JobQuery& query) override {
+    api::JobPage page;
+    for (auto it = jobs.rbegin(); it != jobs.rend(); ++it) {
+      if (!query.cursor.empty() && it->first >= query.cursor) continue;
+      if (query.state && it->second.state != *query.state) continue;
+      if (page.items.size() == query.limit) {
+        page.next_cursor = page.items.back().id;
+        break;
+      }
+      page.items.push_back(it->second);
+    }
+    return page;
+  }
+  std::optional<api::Job> cancel(std::string_view id) override {
+    const auto it = jobs.find(id);
+    if (it == jobs.end()) return std::nullopt;
+    if (!is_final(it->second.state)) it->second.state = api::JobState::canceled;
+    return it->second;
+  }
+  std::optional<api::StoredFile> file(std::string_view, api::JobFile kind) override {
+    const auto it = files.find(kind);
+    return it == files.end() ? std::nullopt : std::optional(it->second);
+  }
+  [[nodiscard]] bool draining() const override { return is_draining; }
+  [[nodiscard]] bool queue_full() const override { return is_full; }
+  [[nodiscard]] std::chrono::seconds retry_after() const override { return std::chrono::seconds(7); }
+  [[nodiscard]] std::string metrics() const override { return "orbis_jobs_queued 0\n"; }
+};
+
+// A directory of its own for each test, gone afterwards.
+class TemporaryDirectory {
+public:
+  TemporaryDirectory() {
+    std::string name = (std::filesystem::temp_directory_path() / "orbis-test-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary directory");
+    path = name;
+  }
+  ~TemporaryDirectory() { std::filesystem::remove_all(path); }
+  TemporaryDirectory(const TemporaryDirectory&) = delete;
+  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+
+  // A file with these contents.
+  [[nodiscard]] std::filesystem::path file(const std::string& name, const std::string& contents) const {
+    std::ofstream(path / name, std::ios::binary) << contents;
+    return path / name;
+  }
+
+  std::filesystem::path path;
+};
+
+} // namespace orbis::test
