@@ -86,16 +86,6 @@ test_a_job_above_its_memory_limit_fails_alone() {
   stop_service
 }
 
-test_results_expire_and_give_410() {
-  start_service expiry --ttl 1
-  submit "$models/tetrahedron.glb"
-  await "$JOB"
-  await_state "$JOB" expired
-  get "$JOB/result"
-  expect_problem 410 expired
-  stop_service
-}
-
 test_with_keys_set_a_request_without_one_is_a_401_and_with_a_wrong_one_a_403() {
   start_service keys --keys open-sesame,second-key
   post "$models/tetrahedron.glb"

@@ -15,8 +15,11 @@ post_model() {
 }
 
 is_textured() {
+  local name
+  name="shared-$(tr / - <<<"${1%.*}")"
   post_model "$shared_data/$1"
-  expect_textured "shared-$(tr / - <<<"${1%.*}")"
+  expect_textured "$name"
+  echo "$shared_data/$1" >"$outputs/$name.input"
 }
 
 is_refused() {

@@ -1,19 +1,23 @@
-// validate.mjs FILE...: the Khronos validator's errors and warnings, one a line; exits 1 when there is one.
+// validate.mjs FILE [INPUT]: the Khronos validator's errors and warnings about FILE, one a line; exits 1 when there is one.
+// A warning that INPUT, the model that FILE was made from, gets too is the model's own and is passed over.
 import fs from 'node:fs'
 import path from 'node:path'
 import validator from 'gltf-validator'
 
-const names = ['error', 'warning']
-let found = 0
-for (const file of process.argv.slice(2)) {
+async function issues(file) {
   const directory = path.dirname(file)
   const report = await validator.validateBytes(new Uint8Array(fs.readFileSync(file)), {
     maxIssues: 100,
     externalResourceFunction: async (uri) => new Uint8Array(fs.readFileSync(path.join(directory, decodeURIComponent(uri)))),
   })
-  for (const {severity, code, message, pointer} of report.issues.messages.filter(({severity}) => severity < 2)) {
-    ++found
-    console.log(`${path.basename(file)}: ${names[severity]} ${code} at ${pointer ?? 'offset'}: ${message}`)
-  }
+  return report.issues.messages.filter(({severity}) => severity < 2)
 }
-process.exit(found ? 1 : 0)
+
+const [file, input] = process.argv.slice(2)
+const isGltf = (name) => /\.gl(b|tf)$/.test(name)
+const inherited = new Set(
+  input && isGltf(input) ? (await issues(input)).filter(({severity}) => severity === 1).map(({code}) => code) : [])
+const ours = (await issues(file)).filter(({code}) => !inherited.has(code))
+for (const {severity, code, message, pointer} of ours)
+  console.log(`${path.basename(file)}: ${['error', 'warning'][severity]} ${code} at ${pointer || 'the file'}: ${message}`)
+process.exit(ours.length ? 1 : 0)
