@@ -93,7 +93,8 @@ struct Asset {
 // request.
 [[nodiscard]] std::optional<BaseColor> base_color(const Asset& asset, const Primitive& primitive);
 
-// What replaces a primitive in the output.
+// What replaces a primitive in the output. Without indices the primitive stays as it was: all its triangles were
+// degenerate.
 struct NewPrimitive {
   std::vector<std::uint32_t> indices;
   std::vector<Attribute> attributes; // with TEXCOORD_n of the atlas and _SPHERE

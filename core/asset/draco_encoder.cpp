@@ -63,7 +63,10 @@ Bytes encode_draco(std::span<const std::uint32_t> indices, std::span<const Attri
   }
   for (std::uint32_t i = 0; i < attributes.size(); ++i) add_attribute(mesh, attributes[i], i);
 
+  auto options = draco::EncoderOptionsBase<draco::GeometryAttribute::Type>::CreateDefaultOptions();
+  options.SetGlobalBool("compress_connectivity", true);
   draco::Encoder encoder;
+  encoder.Reset(options);
   encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);
   draco::EncoderBuffer buffer;
   if (!encoder.EncodeMeshToBuffer(mesh, &buffer).ok()) {

@@ -42,6 +42,23 @@ void write_geometry(Output& out, Json& primitive, const NewPrimitive& source, Co
   primitive["extensions"][std::string(draco_extension)] = Json{{"bufferView", view}, {"attributes", std::move(ids)}};
 }
 
+// What a caller must not hand over, since no valid document could hold it.
+void check_new_primitive(const NewPrimitive& primitive) {
+  const auto all_have = [](const std::vector<Attribute>& attributes, std::size_t count) {
+    return std::all_of(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.count() == count; });
+  };
+  const std::size_t vertices = primitive.attributes.empty() ? 0 : primitive.attributes.front().count();
+  const std::string atlas = "TEXCOORD_" + std::to_string(primitive.atlas_texcoord);
+  const bool is_sound =
+      all_have(primitive.attributes, vertices) && primitive.indices.size() % 3 == 0 &&
+      std::all_of(primitive.targets.begin(), primitive.targets.end(),
+                  [&](const auto& target) { return all_have(target, vertices); }) &&
+      std::all_of(primitive.indices.begin(), primitive.indices.end(), [&](std::uint32_t i) { return i < vertices; }) &&
+      std::any_of(primitive.attributes.begin(), primitive.attributes.end(),
+                  [&](const Attribute& a) { return a.name == atlas; });
+  if (!is_sound) throw Error(ErrorCode::internal, "a new primitive's indices and attributes do not fit together");
+}
+
 void replace_primitive(Output& out, const Primitive& old, const NewPrimitive& source, Compression compression) {
   // A copy, since views and accessors that are added may move the document's parts.
   Json primitive = out.json["meshes"][old.mesh]["primitives"][old.primitive];
@@ -142,6 +159,46 @@ void write_extras(Json& json, std::string_view text) {
   orbis.update(facts);
 }
 
+bool resolves(const Json& document, const std::string& pointer) {
+  try {
+    return document.contains(Json::json_pointer(pointer));
+  } catch (const Json::exception&) {
+    return false; // not a pointer at all
+  }
+}
+
+// KHR_animation_pointer may animate what the atlas took away (a texture transform): such a channel would point at
+// nothing.
+bool is_dead(const Json& channel, const Json& before, const Json& after) {
+  const Json* pointer = find_path(channel, "target", "extensions", "KHR_animation_pointer", "pointer");
+  if (!pointer || !pointer->is_string()) return false;
+  const auto& text = pointer->get_ref<const std::string&>();
+  return resolves(before, text) && !resolves(after, text);
+}
+
+void drop_dead_channels(Json& json, const Json& before) {
+  Json* animations = find(json, "animations");
+  if (!animations) return;
+  Json kept = Json::array();
+  for (const Json& animation : *animations) {
+    Json channels = Json::array();
+    for (const Json& channel : animation.value("channels", Json::array())) {
+      if (!is_dead(channel, before, json)) channels.push_back(channel);
+    }
+    if (channels.size() == array_size(animation, "channels")) {
+      kept.push_back(animation);
+    } else if (!channels.empty()) {
+      kept.push_back(animation);
+      kept.back()["channels"] = std::move(channels);
+    }
+  }
+  if (kept.empty()) {
+    json.erase("animations");
+  } else {
+    *animations = std::move(kept);
+  }
+}
+
 } // namespace
 
 Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, const NewImage& atlas,
@@ -155,10 +212,13 @@ Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, 
   std::vector<AtlasUser> users;
   for (std::size_t i = 0; i < primitives.size(); ++i) {
     const Primitive& old = asset.primitives[i];
+    if (primitives[i].indices.empty()) continue;
+    check_new_primitive(primitives[i]);
     replace_primitive(out, old, primitives[i], compression);
     users.push_back({old.mesh, old.primitive, primitives[i].atlas_texcoord});
   }
   assign_atlas(out.json, add_atlas(out, atlas), users);
+  drop_dead_channels(out.json, document.json);
   if (!document.keeps_numbers) out.drop_unreferenced();
   update_extensions(out.json, document.json, primitives);
   write_extras(out.json, extras_json);

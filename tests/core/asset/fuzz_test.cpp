@@ -126,6 +126,10 @@ bool survives(const test::Bytes& bytes) {
     for (const Primitive& p : asset.primitives) {
       (void)base_color(asset, p);
       primitives.push_back({p.indices, p.attributes, p.targets, 0});
+      if (!p.find("TEXCOORD_0")) {
+        primitives.back().attributes.push_back(
+            {"TEXCOORD_0", ComponentType::f32, false, 2, Bytes(p.vertex_count() * 8)});
+      }
     }
     const Bytes out = write_asset(asset, primitives, {test::tiny_png(), "image/png"}, "{}", Compression::none);
     (void)read_asset(out, {}, Limits{});

@@ -242,3 +242,23 @@ TEST_CASE("images of data URIs and of files move into the GLB; those that did no
   CHECK(json["images"][2]["mimeType"] == "image/png");
   CHECK_FALSE(json["images"][2].contains("uri"));
 }
+
+TEST_CASE("animations of the texture transform that the atlas took away go, others stay") {
+  GltfBuilder b = textured();
+  info_of(b)["extensions"]["KHR_texture_transform"] = {{"offset", {0, 0}}};
+  const auto time = b.add_accessor(std::vector<float>{0, 1}, "SCALAR", 1);
+  const auto values = b.add_accessor(std::vector<float>{0, 0, 1, 1}, "VEC2", 2);
+  const auto channel = [](const char* pointer) {
+    return Json{{"sampler", 0},
+                {"target", {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}};
+  };
+  const Json samplers = Json::array({Json{{"input", time}, {"output", values}}});
+  const Json dead =
+      channel("/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/offset");
+  const Json alive = channel("/materials/0/pbrMetallicRoughness/roughnessFactor");
+  b.append("animations", Json{{"name", "both"}, {"channels", Json::array({dead, alive})}, {"samplers", samplers}});
+  b.append("animations", Json{{"name", "dead"}, {"channels", Json::array({dead})}, {"samplers", samplers}});
+  const Json json = json_of(write(read(b.glb())));
+  REQUIRE(json["animations"].size() == 1);
+  CHECK(json["animations"][0]["channels"] == Json::array({alive}));
+}

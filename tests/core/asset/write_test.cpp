@@ -266,6 +266,35 @@ TEST_CASE("compressed output says so, and names quantised attributes") {
   CHECK(plain["extensionsUsed"] == Json{"KHR_mesh_quantization"});
 }
 
+TEST_CASE("a primitive that is not replaced stays as it was, whatever its compression") {
+  GltfBuilder b = test::tetrahedron();
+  b.json["meshes"][0]["primitives"].push_back(b.json["meshes"][0]["primitives"][0]);
+  const Asset compressed = read(write(b, Compression::draco));
+  std::vector<NewPrimitive> wanted = with_atlas(compressed);
+  for (NewPrimitive& p : wanted) p.atlas_texcoord = 0;
+  wanted[1].indices.clear();
+  const Asset delivered = read(write_asset(compressed, wanted, atlas, "{}", Compression::none));
+  REQUIRE(delivered.primitives.size() == 2);
+  for (const Primitive& p : delivered.primitives) CHECK(p.indices == compressed.primitives[0].indices);
+  CHECK(delivered.primitives[1].attributes.size() == compressed.primitives[1].attributes.size());
+}
+
+TEST_CASE("new primitives that do not fit together are refused") {
+  const Asset asset = read(test::tetrahedron().glb());
+  const auto refused = [&](auto damage) {
+    std::vector<NewPrimitive> primitives = with_atlas(asset);
+    damage(primitives[0]);
+    CHECK_THROWS_AS((void)write_asset(asset, primitives, atlas, "{}", Compression::none), Error);
+  };
+  refused([](NewPrimitive& p) { p.indices[0] = 4; });
+  refused([](NewPrimitive& p) { p.indices.pop_back(); });
+  refused([](NewPrimitive& p) { p.attributes.pop_back(), p.attributes.pop_back(); });
+  refused([](NewPrimitive& p) { p.attributes[0].data.resize(36); });
+  refused([](NewPrimitive& p) { p.targets.push_back({p.attributes[0]}), p.targets[0][0].data.resize(36); });
+  CHECK_THROWS_AS((void)write_asset(asset, {}, atlas, "{}", Compression::none), Error);
+  CHECK_THROWS_AS((void)write_asset(asset, with_atlas(asset), atlas, "[]", Compression::none), Error);
+}
+
 TEST_CASE("what Draco cannot hold is written plain") {
   GltfBuilder wide = test::tetrahedron();
   wide.json["meshes"][0]["primitives"][0]["attributes"]["_A"] =
