@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "core/sphere/hierarchy.h"
+#include "core/mesh/unit_positions.h"
 
 namespace orbis::sphere {
 namespace {
@@ -40,7 +40,7 @@ Eigen::Matrix3d correlation(std::span<const Vec3d> positions, std::span<const do
 } // namespace
 
 std::vector<Vec3d> canonically_turned(const mesh::TriangleMesh& mesh, std::vector<Vec3d> points) {
-  const std::vector<Vec3d> positions = unit_positions(mesh);
+  const std::vector<Vec3d> positions = mesh::unit_positions(mesh);
   const Eigen::Matrix3d m = correlation(positions, vertex_areas(mesh, positions), points);
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Vector3d s = svd.singularValues();

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/mesh/unit_positions.h"
 #include "core/sphere/star_table.h"
 
 namespace orbis::sphere {
@@ -130,7 +131,7 @@ enum : std::uint8_t { vertex_free, vertex_kept, vertex_removed };
 constexpr Index dead_triangle = std::numeric_limits<Index>::max();
 
 Decimation::Decimation(const mesh::TriangleMesh& mesh, mesh::ThreadPool& pool) : pool_(pool) {
-  positions_ = unit_positions(mesh);
+  positions_ = mesh::unit_positions(mesh);
   out_.triangles = mesh.triangles;
   out_.ring_first.push_back(0);
   out_.round_first.push_back(0);
@@ -244,21 +245,6 @@ void Hierarchy::undo(std::size_t i) {
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     triangles[places[k]] = {removed[i], vertices[k], vertices[(k + 1) % vertices.size()]};
   }
-}
-
-std::vector<Vec3d> unit_positions(const mesh::TriangleMesh& mesh) {
-  Vec3d low(mesh.positions.front()), high = low;
-  for (const Vec3f& p : mesh.positions) {
-    low = {std::min(low.x, double{p.x}), std::min(low.y, double{p.y}), std::min(low.z, double{p.z})};
-    high = {std::max(high.x, double{p.x}), std::max(high.y, double{p.y}), std::max(high.z, double{p.z})};
-  }
-  const Vec3d size = high - low;
-  const double extent = std::max({size.x, size.y, size.z});
-  const double scale = extent > 0 ? 1 / extent : 1;
-  std::vector<Vec3d> out;
-  out.reserve(mesh.positions.size());
-  for (const Vec3f& p : mesh.positions) out.push_back((Vec3d(p) - low) * scale);
-  return out;
 }
 
 Hierarchy build_hierarchy(const mesh::TriangleMesh& mesh, mesh::ThreadPool& pool, Progress& progress) {

@@ -42,9 +42,6 @@ struct Hierarchy {
   void undo(std::size_t i);
 };
 
-// The mesh's positions in doubles, moved and scaled so that the longest side of the bounding box is 1.
-[[nodiscard]] std::vector<Vec3d> unit_positions(const mesh::TriangleMesh& mesh);
-
 // Shortest edges first, within each round. Requires what embed_isometric requires.
 // Reports Stage::simplify. Throws Error{canceled}.
 [[nodiscard]] Hierarchy build_hierarchy(const mesh::TriangleMesh& mesh, mesh::ThreadPool& pool, Progress& progress);

@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/mesh/unit_positions.h"
 #include "core/sphere/embedding.h"
 #include "core/sphere/global_step.h"
 #include "core/sphere/hierarchical_basis.h"
@@ -201,7 +202,7 @@ Embedding embed_isometric(const mesh::TriangleMesh& mesh, Quality quality, std::
   Hierarchy hierarchy = build_hierarchy(mesh, pool, progress);
   out.t1_ms = milliseconds_since(start);
   start = std::chrono::steady_clock::now();
-  Refinement refinement(std::move(hierarchy), unit_positions(mesh), pool);
+  Refinement refinement(std::move(hierarchy), mesh::unit_positions(mesh), pool);
   refinement.refine(progress);
   out.t2_ms = milliseconds_since(start);
   start = std::chrono::steady_clock::now();

@@ -33,6 +33,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/mesh/unit_positions.h"
 #include "core/sphere/embedding.h"
 #include "core/sphere/shape_preserving_mesh.h"
 #include "core/sphere/shape_preserving_placement.h"
@@ -177,7 +178,7 @@ bool optimise(Relaxation& relaxation, const mesh::TriangleMesh& mesh, const std:
 Embedding embed_shape_preserving(const mesh::TriangleMesh& mesh, double threshold, Progress& progress) {
   Embedding out;
   Stopwatch simplifying;
-  const std::vector<Vec3d> positions = normalised_positions(mesh);
+  const std::vector<Vec3d> positions = mesh::unit_positions(mesh);
   HalfEdgeMesh surface = make_half_edge_mesh(mesh, positions, progress);
   const std::vector<Collapse> collapses = collapse_to_tetrahedron(surface, progress);
   out.t1_ms = simplifying.milliseconds();
@@ -205,7 +206,7 @@ Embedding embed_shape_preserving(const mesh::TriangleMesh& mesh, double threshol
 
 double shape_preserving_energy(const mesh::TriangleMesh& mesh, const std::vector<Vec3d>& points) {
   NoProgress progress;
-  const std::vector<Vec3d> positions = normalised_positions(mesh);
+  const std::vector<Vec3d> positions = mesh::unit_positions(mesh);
   const HalfEdgeMesh surface = make_half_edge_mesh(mesh, positions, progress);
   const FloaterWeights weights(surface, positions, progress);
   double sum = 0;

@@ -110,23 +110,6 @@ Collapse collapse(HalfEdgeMesh& mesh, HalfEdge h, ShortestEdges& edges) {
 
 } // namespace
 
-std::vector<Vec3d> normalised_positions(const mesh::TriangleMesh& mesh) {
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  Vec3d low(inf, inf, inf), high(-inf, -inf, -inf);
-  for (const Vec3f& p : mesh.positions) {
-    const Vec3d q(p);
-    low = {std::min(low.x, q.x), std::min(low.y, q.y), std::min(low.z, q.z)};
-    high = {std::max(high.x, q.x), std::max(high.y, q.y), std::max(high.z, q.z)};
-  }
-  const Vec3d centre = (low + high) * 0.5, extent = high - low;
-  const double longest = std::max({extent.x, extent.y, extent.z});
-  std::vector<Vec3d> out(mesh.positions.size());
-  if (longest > 0)
-    std::transform(mesh.positions.begin(), mesh.positions.end(), out.begin(),
-                   [&](const Vec3f& p) { return (Vec3d(p) - centre) * (1 / longest); });
-  return out;
-}
-
 HalfEdgeMesh make_half_edge_mesh(const mesh::TriangleMesh& mesh, const std::vector<Vec3d>& positions,
                                  Progress& progress) {
   HalfEdgeMesh out;

@@ -27,10 +27,6 @@ struct HalfEdgeTraits : OpenMesh::DefaultTraits {
 };
 using HalfEdgeMesh = OpenMesh::TriMesh_ArrayKernelT<HalfEdgeTraits>;
 
-// The positions in double, moved and scaled so that the bounding box has its centre at 0 and the longest side 1.
-// Finite for every finite float; a mesh without extent comes out as all zeros.
-[[nodiscard]] std::vector<Vec3d> normalised_positions(const mesh::TriangleMesh& mesh);
-
 // Vertex numbers are those of the triangle mesh. Throws Error{not_genus_zero} where the triangles are not a closed
 // oriented manifold, Error{canceled}.
 [[nodiscard]] HalfEdgeMesh make_half_edge_mesh(const mesh::TriangleMesh& mesh, const std::vector<Vec3d>& positions,

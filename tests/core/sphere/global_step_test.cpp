@@ -5,6 +5,7 @@
 #include <optional>
 #include <random>
 
+#include "core/mesh/unit_positions.h"
 #include "core/sphere/global_step.h"
 #include "core/sphere/relaxation.h"
 #include "support/shapes.h"
@@ -24,7 +25,7 @@ struct Scene {
     std::iota(all.begin(), all.end(), 0U);
     stars.build(mesh.triangles, all, points.size());
     references.resize(mesh.triangles.size());
-    sphere::compute_references(sphere::unit_positions(mesh), mesh.triangles, all, 1e-6, pool, references);
+    sphere::compute_references(mesh::unit_positions(mesh), mesh.triangles, all, 1e-6, pool, references);
     basis.emplace(hierarchy, pool);
     std::vector<sphere::StarTerm> star;
     for (mesh::Index v = 0; v < points.size(); ++v) {

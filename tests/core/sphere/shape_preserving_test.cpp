@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/mesh/unit_positions.h"
 #include "core/sphere/embedding.h"
 #include "core/sphere/orientation.h"
 #include "core/sphere/shape_preserving_mesh.h"
@@ -215,7 +216,7 @@ TEST_CASE("splits undo collapses") {
   for (const TriangleMesh& mesh : {test::cross(), test::lollypop(), shapes::sphere(3),
                                    shapes::RandomTriangulation(3).make(500, 0), shapes::bipyramid(50, 2)}) {
     NoProgress progress;
-    HalfEdgeMesh surface = make_half_edge_mesh(mesh, normalised_positions(mesh), progress);
+    HalfEdgeMesh surface = make_half_edge_mesh(mesh, mesh::unit_positions(mesh), progress);
     const std::vector<Collapse> collapses = collapse_to_tetrahedron(surface, progress);
     CHECK(live_vertices(surface) == 4);
     CHECK(triangles_of(surface).size() == 4);
@@ -228,7 +229,7 @@ TEST_CASE("splits undo collapses") {
 TEST_CASE("a ring runs counter-clockwise seen from outside") {
   const TriangleMesh mesh = shapes::sphere(1);
   NoProgress progress;
-  const HalfEdgeMesh surface = make_half_edge_mesh(mesh, normalised_positions(mesh), progress);
+  const HalfEdgeMesh surface = make_half_edge_mesh(mesh, mesh::unit_positions(mesh), progress);
   const std::set<Triangle> triangles = turned(mesh.triangles);
   std::vector<Index> ring;
   for (Index v = 0; v < mesh.positions.size(); ++v) {
