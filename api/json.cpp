@@ -1,6 +1,8 @@
 #include "api/json.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 namespace orbis::api {
@@ -17,17 +19,11 @@ template <class T> Json optional_value(const std::optional<T>& value) { return v
 
 Json optional_time(const std::optional<Time>& time) { return time ? Json(rfc3339(*time)) : Json(nullptr); }
 
-Json progress_json(const std::optional<JobProgress>& progress) {
-  if (!progress) return nullptr;
-  Json eta = nullptr;
-  if (progress->eta_ms) eta = {{"p50", progress->eta_ms->p50}, {"p90", progress->eta_ms->p90}};
-  return {{"percent", progress->percent},
-          {"stage", name_of(progress->stage)},
-          {"stage_index", static_cast<std::size_t>(progress->stage) + 1},
-          {"stages", stage_count},
-          {"done", progress->done},
-          {"total", progress->total},
-          {"eta_ms", std::move(eta)}};
+// Milliseconds to the microsecond: the digits behind are noise.
+double rounded(double milliseconds) { return std::round(milliseconds * 1e3) / 1e3; }
+
+Json optional_ms(const std::optional<double>& milliseconds) {
+  return milliseconds ? Json(rounded(*milliseconds)) : Json(nullptr);
 }
 
 Json links(const Job& job, const std::string& self) {
@@ -64,14 +60,37 @@ Options options_from_json(const Json& json) {
   return options;
 }
 
+Json to_json(const JobProgress& progress) {
+  Json eta = nullptr;
+  if (progress.eta_ms) eta = {{"p50", rounded(progress.eta_ms->p50)}, {"p90", rounded(progress.eta_ms->p90)}};
+  return {{"percent", std::round(progress.percent * 10) / 10},
+          {"stage", name_of(progress.stage)},
+          {"stage_index", static_cast<std::size_t>(progress.stage) + 1},
+          {"stages", stage_count},
+          {"done", progress.done},
+          {"total", progress.total},
+          {"eta_ms", std::move(eta)}};
+}
+
+JobProgress progress_from_json(const Json& json) {
+  JobProgress progress;
+  const auto stage = std::ranges::find(stage_names, json.at("stage").get<std::string>());
+  if (stage == stage_names.end()) throw Error(ErrorCode::internal, "there is no such stage");
+  progress.stage = static_cast<Stage>(stage - stage_names.begin());
+  json.at("done").get_to(progress.done);
+  json.at("total").get_to(progress.total);
+  json.at("percent").get_to(progress.percent);
+  return progress;
+}
+
 Json to_json(const Timing& timing) {
   Json stages = Json::array();
   for (const StageTiming& stage : timing.stages) {
-    stages.push_back({{"name", stage.name}, {"wall_ms", stage.wall_ms}, {"cpu_ms", stage.cpu_ms}});
+    stages.push_back({{"name", stage.name}, {"wall_ms", rounded(stage.wall_ms)}, {"cpu_ms", rounded(stage.cpu_ms)}});
   }
-  return {{"queue_ms", optional_value(timing.queue_ms)},
-          {"wall_ms", optional_value(timing.wall_ms)},
-          {"cpu_ms", optional_value(timing.cpu_ms)},
+  return {{"queue_ms", optional_ms(timing.queue_ms)},
+          {"wall_ms", optional_ms(timing.wall_ms)},
+          {"cpu_ms", optional_ms(timing.cpu_ms)},
           {"peak_rss_bytes", optional_value(timing.peak_rss_bytes)},
           {"stages", std::move(stages)}};
 }
@@ -129,7 +148,7 @@ Json to_json(const Job& job) {
             {"queue_position", optional_value(job.queue_position)},
             {"attempt", job.attempt},
             {"cached", job.cached},
-            {"progress", progress_json(job.progress)},
+            {"progress", job.progress ? to_json(*job.progress) : Json(nullptr)},
             {"timing", to_json(job.timing)},
             {"options", to_json(job.options)},
             {"input", input_json(job.input)}};

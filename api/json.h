@@ -17,12 +17,14 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json to_json(const Problem& problem);
 [[nodiscard]] Json to_json(const Timing& timing);
 [[nodiscard]] Json to_json(const Options& options);
+[[nodiscard]] Json to_json(const JobProgress& progress);
 [[nodiscard]] Json to_json(const Report& report);
 
 // The inverse of to_json. Throws nlohmann::json::exception or Error{invalid_option} for JSON that to_json has not made.
 [[nodiscard]] Problem problem_from_json(const Json& json);
 [[nodiscard]] Timing timing_from_json(const Json& json);
 [[nodiscard]] Options options_from_json(const Json& json);
+[[nodiscard]] JobProgress progress_from_json(const Json& json); // without the time to go
 
 // RFC 3339 in UTC with milliseconds: "2026-01-31T12:00:00.000Z".
 [[nodiscard]] std::string rfc3339(Time time);

@@ -61,6 +61,7 @@ Json document_of(const StoredJob& stored) {
           {"attempt", job.attempt},
           {"version", job.version},
           {"options", api::to_json(job.options)},
+          {"progress", job.progress ? api::to_json(*job.progress) : Json(nullptr)},
           {"timing", api::to_json(job.timing)},
           {"sha256", job.input.sha256},
           {"bytes", job.input.bytes},
@@ -81,6 +82,7 @@ StoredJob stored_job(const Json& json) {
   json.at("attempt").get_to(job.attempt);
   json.at("version").get_to(job.version);
   job.options = api::options_from_json(json.at("options"));
+  if (!json.at("progress").is_null()) job.progress = api::progress_from_json(json.at("progress"));
   job.timing = api::timing_from_json(json.at("timing"));
   json.at("sha256").get_to(job.input.sha256);
   json.at("bytes").get_to(job.input.bytes);

@@ -79,7 +79,8 @@ private:
 fs::path place(const RunArguments& arguments, std::string_view name) {
   if (name == "result.glb") return arguments.output;
   if (name == "report.json") return arguments.report.value_or(fs::path());
-  return arguments.dump_stages ? *arguments.dump_stages / name : fs::path();
+  const bool picture = name == "atlas.png" || name == "preview.png"; // they are among the dumps, under their numbers
+  return arguments.dump_stages && !picture ? *arguments.dump_stages / name : fs::path();
 }
 
 int print_problem(const Error& error) {

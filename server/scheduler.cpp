@@ -85,6 +85,7 @@ void Scheduler::take_up() {
     }
     stored.job.state = JobState::queued;
     stored.job.started.reset();
+    stored.job.progress.reset();
     changed(stored);
     queue_.push_back(stored.job.id);
     std::string id = stored.job.id;
@@ -351,7 +352,7 @@ void Scheduler::begin(Live& live) {
   log_job("job_started", job);
 }
 
-// Progress lives in memory only: it is worth nothing after a restart.
+// In memory only until the job ends: it is worth nothing after a restart.
 void Scheduler::progress(Live& live, Stage stage, std::uint64_t done, std::uint64_t total) {
   Job& job = live.stored.job;
   if (is_final(job.state)) return;
@@ -371,16 +372,15 @@ void Scheduler::end(Live& live, const JobOutcome& outcome) {
   stored.job.timing.wall_ms = outcome.wall_ms;
   stored.job.timing.cpu_ms = outcome.cpu_ms;
   if (outcome.peak_rss_bytes > 0) stored.job.timing.peak_rss_bytes = outcome.peak_rss_bytes;
-  if (stored.job.state == JobState::canceled) {
-    stored.job.progress.reset();
-  } else if (!outcome.error) {
+  const bool canceled = stored.job.state == JobState::canceled;
+  if (!canceled && !outcome.error) {
     succeed(live, outcome);
-  } else if (outcome.error->code() == ErrorCode::canceled && draining_) {
+  } else if (!canceled && outcome.error->code() == ErrorCode::canceled && draining_) {
     stored.job.state = JobState::queued; // for the next run of the service
     stored.job.started.reset();
     stored.job.progress.reset();
     stored.job.timing = {};
-  } else {
+  } else if (!canceled) {
     fail(stored, *outcome.error);
   }
   changed(stored);
@@ -407,7 +407,10 @@ void Scheduler::succeed(Live& live, const JobOutcome& outcome) {
   } catch (const Json::exception&) {
     return fail(stored, Error(ErrorCode::internal, "the job's report is unreadable"));
   }
-  if (stored.job.progress) stored.job.progress->percent = 100;
+  if (stored.job.progress) {
+    stored.job.progress->percent = 100;
+    stored.job.progress->eta_ms.reset();
+  }
   finish(stored, JobState::succeeded);
   time_to_go_.learn(live.milestones, outcome.wall_ms);
   mean_wall_ms_ = 0.8 * mean_wall_ms_ + 0.2 * outcome.wall_ms;

@@ -74,6 +74,7 @@ TEST_CASE("a job succeeds, with its files, times and triangles") {
   CHECK(job.attempt == 1);
   CHECK(job.input.triangles == 12);
   CHECK(job.timing.cpu_ms == 20);
+  CHECK(job.progress->percent == 100);
   CHECK(job.timing.stages.at(0).name == "refine");
   CHECK(job.started >= job.created);
   CHECK(job.finished >= job.started);
