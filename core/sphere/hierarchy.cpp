@@ -15,10 +15,6 @@ namespace {
 using mesh::Index;
 using mesh::Triangle;
 
-// Rings of more vertices are left for a later round, when their neighbours are fewer. A closed triangulation always
-// has a vertex of degree 5 or less, and a vertex of any degree has a legal parent: the edges outside its ring form an
-// outerplanar graph, of which at least two vertices have no edge.
-constexpr std::size_t most_ring_vertices = 16;
 // Of the candidates of a round, in ascending order of edge length, this part may go. All of them would make a level
 // a uniform subset of the vertices; less lets dense regions go first, as shortest-edge-first does.
 constexpr double candidate_quota = 0.7;
@@ -111,8 +107,9 @@ private:
   void find_candidates();
   [[nodiscard]] Candidate best_collapse(Index v) const;
   void remove_independent();
-  [[nodiscard]] bool makes_double_edge(const Ring& ring) const;
-  void remove(Index v, const Ring& ring);
+  [[nodiscard]] Ring ring_from_parent(const Candidate& c) const;
+  [[nodiscard]] bool claim_edges(const Ring& ring);
+  void remove(const Candidate& c);
   void drop_dead();
 
   std::vector<Vec3d> positions_; // brought to the unit cube
@@ -177,25 +174,29 @@ void Decimation::find_candidates() {
   std::sort(candidates_.begin(), candidates_.end(), order);
 }
 
-bool Decimation::makes_double_edge(const Ring& ring) const {
+// Takes the ring's new edges, all from its first vertex, unless this round has made one of them already.
+bool Decimation::claim_edges(const Ring& ring) {
   for (std::size_t k = 2; k + 1 < ring.size; ++k) {
-    if (new_edges_.contains(ring.vertices[0], ring.vertices[k])) return true;
+    if (new_edges_.contains(ring.vertices[0], ring.vertices[k])) return false;
   }
-  return false;
+  for (std::size_t k = 2; k + 1 < ring.size; ++k) new_edges_.insert(ring.vertices[0], ring.vertices[k]);
+  return true;
 }
 
-void Decimation::remove(Index v, const Ring& ring) {
-  state_[v] = vertex_removed;
-  out_.removed.push_back(v);
-  for (std::size_t k = 0; k < ring.size; ++k) {
-    state_[ring.vertices[k]] = vertex_kept;
-    out_.ring_vertices.push_back(ring.vertices[k]);
-    out_.ring_slots.push_back(ring.slots[k]);
-  }
+Ring Decimation::ring_from_parent(const Candidate& c) const {
+  Ring ring = ring_of(stars_[c.vertex]);
+  rotate_to(ring, c.parent);
+  return ring;
+}
+
+void Decimation::remove(const Candidate& c) {
+  const Ring ring = ring_from_parent(c);
+  out_.removed.push_back(c.vertex);
+  out_.ring_vertices.insert(out_.ring_vertices.end(), ring.vertices.begin(), ring.vertices.begin() + ring.size);
+  out_.ring_slots.insert(out_.ring_slots.end(), ring.slots.begin(), ring.slots.begin() + ring.size);
   out_.ring_first.push_back(static_cast<std::uint32_t>(out_.ring_vertices.size()));
   for (std::size_t k = 1; k + 1 < ring.size; ++k) {
     out_.triangles[ring.slots[k]] = {ring.vertices[0], ring.vertices[k], ring.vertices[k + 1]};
-    if (k > 1) new_edges_.insert(ring.vertices[0], ring.vertices[k]);
   }
   out_.triangles[ring.slots[0]][0] = dead_triangle;
   out_.triangles[ring.slots[ring.size - 1]][0] = dead_triangle;
@@ -203,16 +204,19 @@ void Decimation::remove(Index v, const Ring& ring) {
 
 void Decimation::remove_independent() {
   new_edges_.reset(slots_.size() / 2);
-  std::size_t left = vertices_.size();
+  std::vector<Candidate> accepted;
   for (const Candidate& c : candidates_) {
-    if (left == 4) break;
+    if (vertices_.size() - accepted.size() == 4) break;
     if (state_[c.vertex] != vertex_free) continue;
-    Ring ring = ring_of(stars_[c.vertex]);
-    rotate_to(ring, c.parent);
-    if (makes_double_edge(ring)) continue;
-    remove(c.vertex, ring);
-    --left;
+    const Ring ring = ring_from_parent(c);
+    if (!claim_edges(ring)) continue;
+    state_[c.vertex] = vertex_removed;
+    for (std::size_t k = 0; k < ring.size; ++k) state_[ring.vertices[k]] = vertex_kept;
+    accepted.push_back(c);
   }
+  // In the order of the input, where neighbours are close together: what comes after walks the records front to back.
+  std::ranges::sort(accepted, {}, &Candidate::vertex);
+  for (const Candidate& c : accepted) remove(c);
   out_.round_first.push_back(static_cast<std::uint32_t>(out_.removed.size()));
 }
 

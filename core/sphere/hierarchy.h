@@ -12,6 +12,11 @@
 
 namespace orbis::sphere {
 
+// Rings of more vertices are left for a later round, when their neighbours are fewer. A closed triangulation always
+// has a vertex of degree 5 or less, and a vertex of any degree has a legal parent: the edges outside its ring form an
+// outerplanar graph, of which at least two vertices have no edge.
+inline constexpr std::size_t most_ring_vertices = 16;
+
 // Removal i takes vertex removed[i] out by collapsing the edge to its parent, ring(i)[0]: the hole, a polygon of d
 // vertices in counter-clockwise order, is filled with the fan of the parent. The triangles keep their slots in the
 // input's array: slot(i)[k] held (removed, ring[k], ring[k+1]) before; after, slots 1 .. d-2 hold (ring[0], ring[k],

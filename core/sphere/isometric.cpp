@@ -11,6 +11,8 @@
 //
 // Everything is done in an order that does not depend on the number of threads.
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 
@@ -28,6 +30,8 @@ namespace orbis::sphere {
 namespace {
 
 using mesh::Index;
+
+constexpr std::size_t insertion_grain = 512;
 
 // Coarse levels have slivers that the surface does not have: their shapes are rounded off. The finest level is taken as
 // it is, but for triangles without area.
@@ -75,7 +79,7 @@ public:
 private:
   void insert_round(std::size_t round);
   void keep_stiffness(std::size_t round);
-  void insert(std::size_t removal);
+  [[nodiscard]] bool insert(std::size_t removal);
   void prepare_level(double regularisation);
   // Sweeps over what is active, all at first. Returns whether no step is worthwhile any more.
   bool relax(std::uint32_t sweeps, double worthwhile, Progress& progress);
@@ -99,6 +103,8 @@ Refinement::Refinement(Hierarchy hierarchy, std::vector<Vec3d> positions, mesh::
       references_(hierarchy_.triangles.size()), active_(positions_.size(), 0), basis_(hierarchy_, pool) {
   vertices_.assign(hierarchy_.tetrahedron.begin(), hierarchy_.tetrahedron.end());
   slots_.assign(hierarchy_.tetrahedron_slots.begin(), hierarchy_.tetrahedron_slots.end());
+  std::ranges::sort(vertices_);
+  std::ranges::sort(slots_);
   const mesh::Triangle& t = hierarchy_.triangles[slots_[0]];
   Index apex = 0;
   for (const Index v : vertices_) {
@@ -112,23 +118,39 @@ Refinement::Refinement(Hierarchy hierarchy, std::vector<Vec3d> positions, mesh::
   points_[t[2]] = {-h / 2, w, -1.0 / 3};
 }
 
-void Refinement::insert(std::size_t removal) {
-  std::vector<Vec3d> polygon;
-  for (const Index v : hierarchy_.ring(removal)) polygon.push_back(points_[v]);
-  const std::optional<Vec3d> place = point_in_kernel(polygon);
-  if (!place) throw Error(ErrorCode::not_certified, "a vertex found no place on the sphere that sees its whole ring");
-  points_[hierarchy_.removed[removal]] = *place;
+bool Refinement::insert(std::size_t removal) {
+  std::array<Vec3d, most_ring_vertices> polygon;
+  const std::span<const Index> ring = hierarchy_.ring(removal);
+  for (std::size_t k = 0; k < ring.size(); ++k) polygon[k] = points_[ring[k]];
+  const std::optional<Vec3d> place = point_in_kernel(std::span(polygon).first(ring.size()));
+  if (place) points_[hierarchy_.removed[removal]] = *place;
+  return place.has_value();
 }
 
 void Refinement::insert_round(std::size_t round) {
-  const std::uint32_t begin = hierarchy_.round_first[round], end = hierarchy_.round_first[round + 1];
-  for (std::uint32_t i = begin; i < end; ++i) {
-    insert(i);
-    hierarchy_.undo(i);
+  const std::uint32_t first = hierarchy_.round_first[round], end = hierarchy_.round_first[round + 1];
+  // No two vertices of a round touch the same triangle, nor is one in another's ring.
+  std::atomic<bool> all_placed = true;
+  pool_.for_blocks(end - first, insertion_grain, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = first + from; i < first + to; ++i) {
+      if (!insert(i)) all_placed = false;
+      hierarchy_.undo(i);
+    }
+  });
+  if (!all_placed) {
+    throw Error(ErrorCode::not_certified, "a vertex found no place on the sphere that sees its whole ring");
+  }
+  // Both lists stay in the order of the input, where neighbours are close together.
+  const auto old_vertices = static_cast<std::ptrdiff_t>(vertices_.size());
+  const auto old_slots = static_cast<std::ptrdiff_t>(slots_.size());
+  for (std::uint32_t i = first; i < end; ++i) {
     vertices_.push_back(hierarchy_.removed[i]);
     slots_.push_back(hierarchy_.slots(i).front());
     slots_.push_back(hierarchy_.slots(i).back());
   }
+  std::sort(slots_.begin() + old_slots, slots_.end());
+  std::inplace_merge(slots_.begin(), slots_.begin() + old_slots, slots_.end());
+  std::inplace_merge(vertices_.begin(), vertices_.begin() + old_vertices, vertices_.end());
 }
 
 void Refinement::prepare_level(double regularisation) {
