@@ -88,13 +88,13 @@ Distortion measure_distortion(const mesh::TriangleMesh& mesh, std::span<const Ve
     }
     out.smallest_area = std::min(out.smallest_area, solid_angle(q[0], q[1], q[2]));
     const Stretch s = stretch_of(p, q);
-    image += s.image;
-    surface += s.area;
     if (is_needle(p, s.area) || !(s.image > 0)) {
       ++out.needles;
-    } else {
-      stretches.push_back(s);
+      continue;
     }
+    image += s.image;
+    surface += s.area;
+    stretches.push_back(s);
   }
   if (stretches.empty()) return out;
 
