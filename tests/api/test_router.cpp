@@ -128,9 +128,7 @@ TEST_CASE_FIXTURE(Desk, "media types that are not in the contract are refused be
   CHECK_FALSE(early("model/gltf-binary").has_value());
   CHECK_FALSE(early("Multipart/Form-Data; boundary=x").has_value());
   CHECK(early("text/html")->status == 415);
-  const auto form = early("application/x-www-form-urlencoded");
-  REQUIRE(form.has_value());
-  CHECK(body_of(*form)["detail"].get<std::string>().find("Content-Type") != std::string::npos);
+  CHECK_FALSE(early("application/x-www-form-urlencoded").has_value()); // what curl says unless told otherwise
 }
 
 TEST_CASE_FIXTURE(Desk, "with Prefer wait a job that is done in time answers with its file") {
