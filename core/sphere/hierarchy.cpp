@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "core/mesh/unit_positions.h"
 #include "core/sphere/star_table.h"
@@ -90,9 +91,8 @@ private:
 };
 
 struct Candidate {
-  float cost;
+  float cost; // the length of its shortest edge
   Index vertex;
-  std::uint8_t parent; // place in the ring as ring_of gives it
 };
 
 constexpr float not_now = std::numeric_limits<float>::infinity();
@@ -105,11 +105,11 @@ public:
 
 private:
   void find_candidates();
-  [[nodiscard]] Candidate best_collapse(Index v) const;
+  [[nodiscard]] Candidate candidate(Index v) const;
   void remove_independent();
-  [[nodiscard]] Ring ring_from_parent(const Candidate& c) const;
+  [[nodiscard]] Ring ring_from_parent(Index v) const;
   [[nodiscard]] bool claim_edges(const Ring& ring);
-  void remove(const Candidate& c);
+  void remove(Index v, const Ring& ring);
   void drop_dead();
 
   std::vector<Vec3d> positions_; // brought to the unit cube
@@ -119,6 +119,7 @@ private:
   std::vector<Index> vertices_;      // live
   std::vector<std::uint32_t> slots_; // live
   std::vector<Candidate> candidates_;
+  std::vector<std::pair<Index, Ring>> accepted_; // of this round
   std::vector<std::uint32_t> dead_slots_;
   std::vector<std::uint8_t> state_; // by vertex: free, kept in this round, removed
   EdgeSet new_edges_;
@@ -143,26 +144,19 @@ Decimation::Decimation(const mesh::TriangleMesh& mesh, mesh::ThreadPool& pool) :
   out_.ring_slots.reserve(mesh.triangles.size() * 3);
 }
 
-Candidate Decimation::best_collapse(Index v) const {
-  Candidate best{not_now, v, 0};
+Candidate Decimation::candidate(Index v) const {
   const std::span<const StarCorner> star = stars_[v];
-  if (star.size() > most_ring_vertices) return best;
-  const Ring ring = ring_of(star);
-  const std::uint32_t illegal = chorded(ring, stars_);
-  for (std::size_t k = 0; k < ring.size; ++k) {
-    if ((illegal >> k & 1U) != 0) continue;
-    const double length = norm(positions_[ring.vertices[k]] - positions_[v]);
-    const auto cost = static_cast<float>(length);
-    if (cost < best.cost) best = {cost, v, static_cast<std::uint8_t>(k)};
-  }
-  return best;
+  if (star.size() > most_ring_vertices) return {not_now, v};
+  double shortest = squared_norm(positions_[star[0].next] - positions_[v]);
+  for (const StarCorner& c : star) shortest = std::min(shortest, squared_norm(positions_[c.next] - positions_[v]));
+  return {static_cast<float>(std::sqrt(shortest)), v};
 }
 
 void Decimation::find_candidates() {
   stars_.build(out_.triangles, slots_, positions_.size());
   candidates_.resize(vertices_.size());
   pool_.for_blocks(vertices_.size(), 2048, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) candidates_[i] = best_collapse(vertices_[i]);
+    for (std::size_t i = begin; i < end; ++i) candidates_[i] = candidate(vertices_[i]);
   });
   std::erase_if(candidates_, [](const Candidate& c) { return c.cost == not_now; });
   const auto quota = static_cast<std::ptrdiff_t>(std::ceil(static_cast<double>(candidates_.size()) * candidate_quota));
@@ -183,15 +177,24 @@ bool Decimation::claim_edges(const Ring& ring) {
   return true;
 }
 
-Ring Decimation::ring_from_parent(const Candidate& c) const {
-  Ring ring = ring_of(stars_[c.vertex]);
-  rotate_to(ring, c.parent);
+// The ring of v, from its nearest legal parent on: there always is one.
+Ring Decimation::ring_from_parent(Index v) const {
+  Ring ring = ring_of(stars_[v]);
+  const std::uint32_t illegal = chorded(ring, stars_);
+  std::size_t parent = 0;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < ring.size; ++k) {
+    const double length = squared_norm(positions_[ring.vertices[k]] - positions_[v]);
+    if ((illegal >> k & 1U) != 0 || length >= shortest) continue;
+    shortest = length;
+    parent = k;
+  }
+  rotate_to(ring, parent);
   return ring;
 }
 
-void Decimation::remove(const Candidate& c) {
-  const Ring ring = ring_from_parent(c);
-  out_.removed.push_back(c.vertex);
+void Decimation::remove(Index v, const Ring& ring) {
+  out_.removed.push_back(v);
   out_.ring_vertices.insert(out_.ring_vertices.end(), ring.vertices.begin(), ring.vertices.begin() + ring.size);
   out_.ring_slots.insert(out_.ring_slots.end(), ring.slots.begin(), ring.slots.begin() + ring.size);
   out_.ring_first.push_back(static_cast<std::uint32_t>(out_.ring_vertices.size()));
@@ -204,19 +207,19 @@ void Decimation::remove(const Candidate& c) {
 
 void Decimation::remove_independent() {
   new_edges_.reset(slots_.size() / 2);
-  std::vector<Candidate> accepted;
+  accepted_.clear();
   for (const Candidate& c : candidates_) {
-    if (vertices_.size() - accepted.size() == 4) break;
+    if (vertices_.size() - accepted_.size() == 4) break;
     if (state_[c.vertex] != vertex_free) continue;
-    const Ring ring = ring_from_parent(c);
+    const Ring ring = ring_from_parent(c.vertex);
     if (!claim_edges(ring)) continue;
     state_[c.vertex] = vertex_removed;
     for (std::size_t k = 0; k < ring.size; ++k) state_[ring.vertices[k]] = vertex_kept;
-    accepted.push_back(c);
+    accepted_.emplace_back(c.vertex, ring);
   }
   // In the order of the input, where neighbours are close together: what comes after walks the records front to back.
-  std::ranges::sort(accepted, {}, &Candidate::vertex);
-  for (const Candidate& c : accepted) remove(c);
+  std::ranges::sort(accepted_, {}, &std::pair<Index, Ring>::first);
+  for (const auto& [v, ring] : accepted_) remove(v, ring);
   out_.round_first.push_back(static_cast<std::uint32_t>(out_.removed.size()));
 }
 
