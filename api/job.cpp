@@ -6,7 +6,7 @@
 namespace orbis::api {
 
 std::optional<JobState> job_state(std::string_view name) {
-  const auto it = std::ranges::find(job_state_names, name);
+  const auto* it = std::ranges::find(job_state_names, name);
   if (it == job_state_names.end()) return std::nullopt;
   return static_cast<JobState>(it - job_state_names.begin());
 }

@@ -74,7 +74,7 @@ Json to_json(const JobProgress& progress) {
 
 JobProgress progress_from_json(const Json& json) {
   JobProgress progress;
-  const auto stage = std::ranges::find(stage_names, json.at("stage").get<std::string>());
+  const auto* stage = std::ranges::find(stage_names, json.at("stage").get<std::string>());
   if (stage == stage_names.end()) throw Error(ErrorCode::internal, "there is no such stage");
   progress.stage = static_cast<Stage>(stage - stage_names.begin());
   json.at("done").get_to(progress.done);

@@ -164,7 +164,7 @@ std::shared_ptr<void> take_slot(std::atomic<std::uint32_t>& taken, std::uint32_t
 
 } // namespace
 
-Response Router::problem_response(Problem problem) const {
+Response Router::problem_response(const Problem& problem) const {
   Response response = text_response(problem.status, "application/problem+json", dump(to_json(problem)));
   if (problem.status == 401) response.set("WWW-Authenticate", "Bearer");
   if (problem.status == 429 || problem.status == 503) {
@@ -227,7 +227,7 @@ Response Router::job_route(const Request& request, std::string_view id, std::str
     return request.method == "DELETE" ? delete_job(id) : method_not_allowed("GET, DELETE");
   }
   rest.remove_prefix(1);
-  const auto file = std::ranges::find(file_traits, rest, &FileTraits::route);
+  const auto* file = std::ranges::find(file_traits, rest, &FileTraits::route);
   if (rest != "events" && file == std::end(file_traits)) refuse_unknown_path();
   if (!is_read(request)) return method_not_allowed("GET");
   return rest == "events" ? get_events(request, id) : get_file(request, id, file->kind);
@@ -337,7 +337,7 @@ Response Router::get_file(const Request& request, std::string_view id, JobFile k
 Response Router::result_of(const Request& request, const Job& job, JobFile kind) {
   const auto refuse = [&](Problem problem) {
     problem.instance = "/v1/jobs/" + job.id;
-    return problem_response(std::move(problem));
+    return problem_response(problem);
   };
   switch (job.state) {
   case JobState::queued:

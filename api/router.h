@@ -42,7 +42,7 @@ private:
   [[nodiscard]] Response get_file(const Request& request, std::string_view id, JobFile kind);
   [[nodiscard]] Response get_events(const Request& request, std::string_view id);
   [[nodiscard]] Response readiness() const;
-  [[nodiscard]] Response problem_response(Problem problem) const;
+  [[nodiscard]] Response problem_response(const Problem& problem) const;
 
   [[nodiscard]] Job require(std::string_view id) const;
   [[nodiscard]] Response result_of(const Request& request, const Job& job, JobFile kind);

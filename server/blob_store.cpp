@@ -20,7 +20,7 @@ template <class Action> auto guarded(std::string_view what, Action action) {
 
 } // namespace
 
-BlobStore::BlobStore(fs::path data) : jobs_(data / "jobs"), spool_(data / "spool") {
+BlobStore::BlobStore(const fs::path& data) : jobs_(data / "jobs"), spool_(data / "spool") {
   guarded("be set up", [&] {
     fs::remove_all(spool_);
     fs::create_directories(spool_);

@@ -16,7 +16,7 @@ namespace orbis::server {
 class BlobStore {
 public:
   // Creates the directories; empties the spool of an earlier run. Throws Error{internal} where it cannot.
-  explicit BlobStore(std::filesystem::path data);
+  explicit BlobStore(const std::filesystem::path& data);
 
   // A fresh name for an upload.
   [[nodiscard]] std::filesystem::path spool_path();

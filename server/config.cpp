@@ -101,7 +101,7 @@ std::string spelled(std::string_view setting, char separator, char (*letter)(cha
 std::span<const Setting> settings() { return table; }
 
 void set(Config& config, std::string_view name, std::string_view text) {
-  const auto row = std::ranges::find(table, name, &Setting::name);
+  const auto* row = std::ranges::find(table, name, &Setting::name);
   if (row == std::end(table)) {
     throw Error(ErrorCode::invalid_option, "there is no setting '" + std::string(name) + "'", std::string(name));
   }

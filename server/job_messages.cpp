@@ -49,7 +49,7 @@ JobLimits limits_from(const Json& json) {
 }
 
 Stage stage_of(std::string_view name) {
-  const auto it = std::ranges::find(stage_names, name);
+  const auto* it = std::ranges::find(stage_names, name);
   if (it == stage_names.end()) broken();
   return static_cast<Stage>(it - stage_names.begin());
 }

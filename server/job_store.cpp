@@ -133,6 +133,17 @@ JobStore::JobStore(const std::filesystem::path& file)
 
 namespace {
 
+std::vector<StoredJob> rows(Statement& query) {
+  std::vector<StoredJob> jobs;
+  try {
+    while (query.step()) jobs.push_back(read_row(query));
+  } catch (const Error&) {
+    query.reset();
+    throw;
+  }
+  return jobs;
+}
+
 void bind_changes(Statement& statement, const StoredJob& stored) {
   statement.bind(0, api::name_of(stored.job.state));
   if (stored.job.expires)
@@ -156,17 +167,6 @@ void JobStore::insert(const StoredJob& stored) {
 void JobStore::update(const StoredJob& stored) {
   bind_changes(update_, stored);
   update_.run();
-}
-
-std::vector<StoredJob> JobStore::rows(Statement& query) {
-  std::vector<StoredJob> jobs;
-  try {
-    while (query.step()) jobs.push_back(read_row(query));
-  } catch (const Error&) {
-    query.reset();
-    throw;
-  }
-  return jobs;
 }
 
 std::optional<StoredJob> JobStore::find(std::string_view id) {

@@ -32,9 +32,9 @@ public:
   // Opens or creates the database; refuses one that a newer version of orbis has written.
   explicit JobStore(const std::filesystem::path& file);
 
-  void insert(const StoredJob& job);
+  void insert(const StoredJob& stored);
   // Writes what changes after the insertion: state, times, attempt, timing, input, outputs, result, problem.
-  void update(const StoredJob& job);
+  void update(const StoredJob& stored);
   [[nodiscard]] std::optional<StoredJob> find(std::string_view id);
   [[nodiscard]] std::optional<StoredJob> find_by_key(std::string_view idempotency_key);
   // Newest first, from after query.cursor on, at most query.limit.
@@ -47,8 +47,6 @@ public:
   void forget_expired(api::Time time);
 
 private:
-  [[nodiscard]] std::vector<StoredJob> rows(Statement& query);
-
   Database database_;
   Statement insert_, update_, find_, find_by_key_, list_, unfinished_, due_, forget_;
 };

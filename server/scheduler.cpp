@@ -4,9 +4,8 @@
 #include <cmath>
 
 #include "api/json.h"
-#include "server/file_writer.h"
+#include "server/job_files.h"
 #include "server/log.h"
-#include "server/sha256.h"
 
 namespace orbis::server {
 namespace {
@@ -14,29 +13,6 @@ namespace {
 using api::Job;
 using api::JobState;
 using api::Json;
-
-constexpr std::uint64_t max_report_bytes = 16 << 20;
-constexpr std::string_view output_names[] = {"result.glb", "report.json", "atlas.png", "preview.png"}; // as JobFile
-
-// The same for two requests that ask for the same.
-std::string fingerprint(const api::Submission& submission) {
-  Json json{{"options", api::to_json(submission.options)}, {"model", submission.model.sha256}};
-  for (const api::Part& part : submission.files) json["files"][part.file_name] = part.sha256;
-  return sha256_of(api::dump(json));
-}
-
-StoredJob stored_job(const api::Submission& submission, std::string id) {
-  StoredJob stored;
-  stored.job.id = std::move(id);
-  stored.job.created = api::now();
-  stored.job.options = submission.options;
-  stored.job.input = {submission.model.sha256, submission.model.bytes, std::nullopt};
-  stored.inputs.push_back({"model", submission.model.bytes});
-  for (const api::Part& part : submission.files) stored.inputs.push_back({part.file_name, part.bytes});
-  stored.idempotency_key = submission.idempotency_key;
-  stored.fingerprint = fingerprint(submission);
-  return stored;
-}
 
 void log_job(std::string_view event, const Job& job) {
   Json fields{{"job", job.id}, {"state", name_of(job.state)}, {"attempt", job.attempt}};
@@ -167,7 +143,7 @@ std::optional<Job> Scheduler::earlier_submission(const std::string& key, const s
 Job Scheduler::submit(api::Submission submission) {
   const Lock lock(mutex_);
   if (draining_) throw api::Refused(api::Refusal::draining, "the service is shutting down; try again soon");
-  StoredJob stored = stored_job(submission, ids_.next(api::now()));
+  StoredJob stored = new_job(submission, ids_.next(api::now()));
   if (auto earlier = earlier_submission(stored.idempotency_key, stored.fingerprint)) return *std::move(earlier);
   if (queue_full()) {
     metrics_.job_refused();
@@ -264,7 +240,7 @@ std::optional<api::StoredFile> Scheduler::file(std::string_view id, api::JobFile
   const Lock lock(mutex_);
   const auto stored = store_.find(id);
   if (!stored || stored->job.state != JobState::succeeded) return std::nullopt;
-  const std::string_view name = output_names[static_cast<std::size_t>(kind)];
+  const std::string_view name = name_of(kind);
   const auto output = std::ranges::find(stored->outputs, name, [](const auto& o) { return std::string_view(o.first); });
   if (output == stored->outputs.end()) return std::nullopt;
   return api::StoredFile{blobs_.output_path(id, name), output->second.bytes, output->second.sha256};
@@ -305,15 +281,12 @@ void Scheduler::run(const std::string& id, Lock& lock) {
   Live& live = live_.at(id); // stays where it is: only its worker erases a running job
   begin(live);
   const JobTask task = task_of(live.stored);
-  const JobHooks hooks{[&](Stage stage, std::uint64_t done, std::uint64_t total) {
-                         const Lock progress_lock(mutex_);
-                         progress(live, stage, done, total);
-                       },
-                       [&](std::string_view name) {
-                         return std::ranges::find(output_names, name) != std::end(output_names)
-                                    ? blobs_.output_path(id, name)
-                                    : std::filesystem::path();
-                       }};
+  const JobHooks hooks{
+      [&](Stage stage, std::uint64_t done, std::uint64_t total) {
+        const Lock progress_lock(mutex_);
+        progress(live, stage, done, total);
+      },
+      [&](std::string_view name) { return is_result(name) ? blobs_.output_path(id, name) : std::filesystem::path(); }};
   const std::stop_token stop = live.stop.get_token();
   lock.unlock();
   JobOutcome outcome;
@@ -390,22 +363,11 @@ void Scheduler::end(Live& live, const JobOutcome& outcome) {
 
 void Scheduler::succeed(Live& live, const JobOutcome& outcome) {
   StoredJob& stored = live.stored;
-  for (const OutputFile& file : outcome.files)
-    stored.outputs.emplace_back(file.name, api::JobResult{file.sha256, file.bytes});
   try {
-    for (const std::string_view name : output_names) {
-      const auto file = std::ranges::find(outcome.files, name, &OutputFile::name);
-      if (file == outcome.files.end()) throw Error(ErrorCode::internal, "a result of the job is missing");
-      if (name == "result.glb") stored.job.result = api::JobResult{file->sha256, file->bytes};
-    }
-    const auto text = read_file(blobs_.output_path(stored.job.id, "report.json"), max_report_bytes);
-    const Json report = Json::parse(text);
-    stored.job.timing.stages = api::timing_from_json(report.at("timing")).stages;
-    stored.job.input.triangles = report.at("input").at("triangles").get<std::uint64_t>();
+    take_results(stored, outcome, blobs_.output_path(stored.job.id, "report.json"));
   } catch (const Error& error) {
+    stored.outputs.clear();
     return fail(stored, error);
-  } catch (const Json::exception&) {
-    return fail(stored, Error(ErrorCode::internal, "the job's report is unreadable"));
   }
   if (stored.job.progress) {
     stored.job.progress->percent = 100;

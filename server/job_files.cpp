@@ -1,0 +1,60 @@
+#include "server/job_files.h"
+
+#include <algorithm>
+#include <array>
+
+#include "api/json.h"
+#include "server/file_writer.h"
+#include "server/sha256.h"
+
+namespace orbis::server {
+namespace {
+
+using api::Json;
+
+constexpr std::uint64_t max_report_bytes = 16 << 20;
+// In the order of api::JobFile.
+constexpr std::array<std::string_view, 4> result_names{"result.glb", "report.json", "atlas.png", "preview.png"};
+
+std::string fingerprint(const api::Submission& submission) {
+  Json json{{"options", api::to_json(submission.options)}, {"model", submission.model.sha256}};
+  for (const api::Part& part : submission.files) json["files"][part.file_name] = part.sha256;
+  return sha256_of(api::dump(json));
+}
+
+} // namespace
+
+StoredJob new_job(const api::Submission& submission, std::string id) {
+  StoredJob stored;
+  stored.job.id = std::move(id);
+  stored.job.created = api::now();
+  stored.job.options = submission.options;
+  stored.job.input = {submission.model.sha256, submission.model.bytes, std::nullopt};
+  stored.inputs.push_back({"model", submission.model.bytes});
+  for (const api::Part& part : submission.files) stored.inputs.push_back({part.file_name, part.bytes});
+  stored.idempotency_key = submission.idempotency_key;
+  stored.fingerprint = fingerprint(submission);
+  return stored;
+}
+
+std::string_view name_of(api::JobFile kind) { return result_names.at(static_cast<std::size_t>(kind)); }
+
+bool is_result(std::string_view name) { return std::ranges::find(result_names, name) != result_names.end(); }
+
+void take_results(StoredJob& stored, const JobOutcome& outcome, const std::filesystem::path& report) {
+  for (const std::string_view name : result_names) {
+    const auto file = std::ranges::find(outcome.files, name, &OutputFile::name);
+    if (file == outcome.files.end()) throw Error(ErrorCode::internal, "a result of the job is missing");
+    stored.outputs.emplace_back(name, api::JobResult{file->sha256, file->bytes});
+  }
+  try {
+    const Json json = Json::parse(read_file(report, max_report_bytes));
+    stored.job.timing.stages = api::timing_from_json(json.at("timing")).stages;
+    stored.job.input.triangles = json.at("input").at("triangles").get<std::uint64_t>();
+  } catch (const Json::exception&) {
+    throw Error(ErrorCode::internal, "the job's report is unreadable");
+  }
+  stored.job.result = stored.outputs.front().second;
+}
+
+} // namespace orbis::server

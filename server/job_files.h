@@ -1,0 +1,24 @@
+// What a job takes in and leaves behind.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "server/job_runner.h"
+#include "server/job_store.h"
+
+namespace orbis::server {
+
+// The job that a submission asks for, queued, with a fingerprint that two requests for the same share.
+[[nodiscard]] StoredJob new_job(const api::Submission& submission, std::string id);
+
+// The name under which a result is stored: "result.glb", "report.json", "atlas.png", "preview.png".
+[[nodiscard]] std::string_view name_of(api::JobFile kind);
+[[nodiscard]] bool is_result(std::string_view name);
+
+// Enters the files of a job that has succeeded, and what its report says about its input and its stages.
+// Throws Error{internal} where a result is missing or the report is unreadable.
+void take_results(StoredJob& stored, const JobOutcome& outcome, const std::filesystem::path& report);
+
+} // namespace orbis::server
