@@ -66,7 +66,7 @@ void GlobalStep::solve(std::uint32_t most_iterations) {
   }
 }
 
-double GlobalStep::take(std::uint32_t most_iterations, std::span<Vec3d> points) {
+StepOutcome GlobalStep::take(std::uint32_t most_iterations, std::span<Vec3d> points) {
   const std::size_t n = points.size();
   for (auto* vector : {&residual_, &step_, &direction_, &image_, &preconditioned_}) vector->resize(n);
   trial_.resize(n);
@@ -88,9 +88,9 @@ double GlobalStep::take(std::uint32_t most_iterations, std::span<Vec3d> points) 
     const double after = energy(trial_);
     if (!(after < before)) continue;
     std::ranges::copy(trial_, points.begin());
-    return (before - after) / before;
+    return {(before - after) / before, t};
   }
-  return 0;
+  return {};
 }
 
 } // namespace orbis::sphere

@@ -20,15 +20,19 @@ struct FinestLevel {
   std::span<const Reference> references;
 };
 
+struct StepOutcome {
+  double gain = 0;   // part of the energy
+  double length = 0; // part of the Newton step that was taken: 1, 1/2, 1/4, …; 0 where none helped
+};
+
 class GlobalStep {
 public:
   GlobalStep(const FinestLevel& level, HierarchicalBasis& basis, mesh::ThreadPool& pool);
 
   // Solves for the Newton direction by preconditioned conjugate gradients (at most `most_iterations`; ends where the
   // residual has fallen to a twentieth in the preconditioner's norm), then goes along it: the whole way, or half of it
-  // and so on, until the energy falls, which also says that no triangle folds. Returns the part of the energy that was
-  // gained, 0 where no step helps; the points then stay.
-  double take(std::uint32_t most_iterations, std::span<Vec3d> points);
+  // and so on, until the energy falls, which also says that no triangle folds. Where no step helps the points stay.
+  StepOutcome take(std::uint32_t most_iterations, std::span<Vec3d> points);
 
 private:
   void solve(std::uint32_t most_iterations);

@@ -60,7 +60,7 @@ constexpr Effort effort_of(Quality quality) {
   case Quality::draft:
     return {0, 0, 0};
   case Quality::standard:
-    return {4, 20, 3e-3};
+    return {6, 20, 1e-3};
   case Quality::high:
     break;
   }
@@ -204,9 +204,12 @@ void Refinement::optimise(const Effort& effort, Progress& progress) {
   for (int i = 0; i < effort.steps && hierarchy_.rounds() > 0; ++i) {
     progress.report(Stage::optimise, static_cast<std::uint64_t>(i) + 1, total);
     progress.check();
-    const double gain = global.take(effort.iterations, points_);
-    converged = relax(final_sweeps, final_gain, progress) && gain < effort.enough;
-    if (gain < effort.enough) break;
+    const StepOutcome step = global.take(effort.iterations, points_);
+    const bool settled = relax(final_sweeps, final_gain, progress);
+    // A step that a fold cut short gains little because of one place, which the relaxation has just mended.
+    const bool enough = step.gain < effort.enough && (step.length == 0 || step.length == 1);
+    converged = settled && enough;
+    if (enough) break;
   }
   progress.report(Stage::optimise, total, total);
 }
