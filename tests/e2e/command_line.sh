@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# `orbis run`: the same job without a server. The image's tests run it in a container of its own.
+# `orbis run`: the same job without a server.
 
 # run_orbis INPUT [ARGUMENTS…]: sets EXIT; the result is $work/run.glb, the report $work/run.json, standard error
 # $work/run.err.
@@ -8,13 +8,10 @@ run_orbis() {
   shift
   rm -f "$work"/run.{glb,json,err}
   EXIT=0
-  "$orbis" run "$input" -o "$work/run.glb" --report "$work/run.json" "$@" 2>"$work/run.err" || EXIT=$?
+  orbis_command run "$input" -o "$work/run.glb" --report "$work/run.json" "$@" 2>"$work/run.err" || EXIT=$?
 }
 
-need_binary() { [ -z "${ORBIS_IMAGE:-}" ] || skip "the image is tested through its service"; }
-
 test_run_writes_the_result_and_the_report() {
-  need_binary
   run_orbis "$models/egg.glb" --texture-size 512
   expect "the exit status" "$EXIT" 0
   expect "the first bytes" "$(head -c 4 "$work/run.glb")" glTF
@@ -24,14 +21,12 @@ test_run_writes_the_result_and_the_report() {
 }
 
 test_run_gives_the_same_bytes_as_the_service() {
-  need_binary
   run_orbis "$models/egg.glb" --texture-size 256
   textured same-as-run "$models/egg.glb"
   cmp "$work/run.glb" "$outputs/same-as-run.glb" || fail "the two results differ"
 }
 
 test_run_refuses_a_torus_with_2_and_the_problem_document() {
-  need_binary
   run_orbis "$models/torus.glb"
   expect "the exit status" "$EXIT" 2
   expect "the problem" "$(jq --raw-output .type "$work/run.err")" /problems/not-genus-zero
@@ -39,13 +34,11 @@ test_run_refuses_a_torus_with_2_and_the_problem_document() {
 }
 
 test_run_ends_with_1_where_the_input_cannot_be_opened() {
-  need_binary
   run_orbis "$work/no-such-file.glb"
   expect "the exit status" "$EXIT" 1
 }
 
 test_run_dumps_its_stages() {
-  need_binary
   run_orbis "$models/egg.glb" --texture-size 256 --dump-stages "$work/stages"
   expect "the exit status" "$EXIT" 0
   compgen -G "$work/stages/*.obj" >/dev/null || fail "there is no OBJ among: $(ls "$work/stages")"

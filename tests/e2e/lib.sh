@@ -23,6 +23,16 @@ expect_match() { [[ $2 =~ $3 ]] || fail "$1 is '$2', expected to match '$3'"; }
 
 describe_body() { head -c 600 "$BODY" | tr -c '[:print:]\n' '.'; }
 
+# orbis_command ARGUMENTS…: the program itself; in a container of its own where an image is tested.
+orbis_command() {
+  if [ -n "${ORBIS_IMAGE:-}" ]; then
+    "$DOCKER" run --rm --network none --read-only --tmpfs /tmp --cap-drop ALL --user "$(id -u):$(id -g)" \
+      --volume "$work:$work" "$ORBIS_IMAGE" "$@"
+  else
+    "$orbis" "$@"
+  fi
+}
+
 # --- the service -----------------------------------------------------------------------------------------------------
 
 free_port() { node -e 'const s = require("net").createServer().listen(0, "127.0.0.1", () => { console.log(s.address().port); s.close(); })'; }

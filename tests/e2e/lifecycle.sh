@@ -101,9 +101,8 @@ test_with_keys_set_a_request_without_one_is_a_401_and_with_a_wrong_one_a_403() {
 }
 
 test_an_unknown_setting_is_refused_at_the_start() {
-  [ -z "${ORBIS_IMAGE:-}" ] || skip "the image is tested through its service"
   EXIT=0
-  "$orbis" serve --no-such-setting 1 >/dev/null 2>"$work/start.err" || EXIT=$?
+  orbis_command serve --no-such-setting 1 >/dev/null 2>"$work/start.err" || EXIT=$?
   expect_match "the exit status" "$EXIT" '^[12]$'
   grep -q no-such-setting "$work/start.err" || fail "the message does not name it: $(cat "$work/start.err")"
 }
