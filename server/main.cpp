@@ -1,5 +1,6 @@
 // orbis: sphere parametrization and texturing of closed genus-0 meshes, as a service and on the command line.
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 
@@ -86,10 +87,7 @@ int execute(const CLI::App& app, const CommandLine& line) {
   return orbis::server::run(line.run, config.scheduler.limits);
 }
 
-} // namespace
-
-int main(int argc, char** argv) {
-  if (argc == 2 && std::string_view(argv[1]) == "job-child") orbis::server::run_job_child();
+int parse_and_execute(int argc, char** argv) {
   CLI::App app("Maps closed genus-0 meshes to the sphere, and textures them.", "orbis");
   app.set_version_flag("--version", "orbis " ORBIS_VERSION);
   app.require_subcommand(1);
@@ -105,5 +103,17 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 1;
   } catch (const orbis::Error& error) {
     return report(error);
+  }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  if (argc == 2 && std::string_view(argv[1]) == "job-child") orbis::server::run_job_child();
+  try {
+    return parse_and_execute(argc, argv);
+  } catch (const std::exception& error) {
+    std::fputs(error.what(), stderr); // no memory, no threads: nothing that could be reported better
+    return 1;
   }
 }

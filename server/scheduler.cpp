@@ -28,8 +28,9 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
 
 } // namespace
 
-Scheduler::Scheduler(JobStore& store, BlobStore& blobs, JobRunner& runner, Metrics& metrics, SchedulerSettings settings)
-    : store_(store), blobs_(blobs), runner_(runner), metrics_(metrics), settings_(std::move(settings)) {
+Scheduler::Scheduler(JobStore& store, BlobStore& blobs, JobRunner& runner, Metrics& metrics,
+                     const SchedulerSettings& settings)
+    : store_(store), blobs_(blobs), runner_(runner), metrics_(metrics), settings_(settings) {
   take_up();
 }
 
@@ -37,9 +38,9 @@ Scheduler::~Scheduler() { drain(std::chrono::milliseconds(0)); }
 
 void Scheduler::start() {
   for (std::uint32_t i = 0; i < settings_.workers; ++i) {
-    threads_.emplace_back([this](std::stop_token stop) { work(std::move(stop)); });
+    threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
   }
-  threads_.emplace_back([this](std::stop_token stop) {
+  threads_.emplace_back([this](const std::stop_token& stop) {
     Lock lock(mutex_);
     while (!stop.stop_requested()) {
       lock.unlock();
@@ -256,7 +257,7 @@ std::string Scheduler::metrics() const {
   return metrics_.text({queued_, running_, settings_.workers, settings_.queue, draining_});
 }
 
-void Scheduler::work(std::stop_token stop) {
+void Scheduler::work(const std::stop_token& stop) {
   Lock lock(mutex_);
   while (work_.wait(lock, stop, [this] { return !queue_.empty() && !draining_; })) {
     const std::string id = std::move(queue_.front());

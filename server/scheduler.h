@@ -31,7 +31,7 @@ struct SchedulerSettings {
 class Scheduler final : public api::JobService {
 public:
   // Takes up what an earlier run has left: queued and interrupted jobs run again. start() starts the workers.
-  Scheduler(JobStore& store, BlobStore& blobs, JobRunner& runner, Metrics& metrics, SchedulerSettings settings);
+  Scheduler(JobStore& store, BlobStore& blobs, JobRunner& runner, Metrics& metrics, const SchedulerSettings& settings);
   ~Scheduler() override;
   Scheduler(const Scheduler&) = delete;
   Scheduler& operator=(const Scheduler&) = delete;
@@ -67,7 +67,7 @@ private:
   };
 
   void take_up();
-  void work(std::stop_token stop);
+  void work(const std::stop_token& stop);
   void run(const std::string& id, Lock& lock);
   [[nodiscard]] JobTask task_of(const StoredJob& stored) const;
   void begin(Live& live);

@@ -1,13 +1,14 @@
 #include "server/time_to_go.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace orbis::server {
 namespace {
 
 double quantile(std::vector<double> values, double q) {
-  const auto rank = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
+  const auto rank = static_cast<std::ptrdiff_t>(std::lround(q * static_cast<double>(values.size() - 1)));
   std::ranges::nth_element(values, values.begin() + rank);
   return values[static_cast<std::size_t>(rank)];
 }

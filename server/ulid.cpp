@@ -1,5 +1,6 @@
 #include "server/ulid.h"
 
+#include <algorithm>
 #include <string_view>
 
 namespace orbis::server {
@@ -10,11 +11,10 @@ constexpr std::size_t time_digits = 10, random_digits = 16;
 
 // The next text in the order of the digits.
 void increment(std::string& ulid) {
-  for (auto digit = ulid.rbegin(); digit != ulid.rend(); ++digit) {
-    const auto value = digits.find(*digit);
-    *digit = digits[(value + 1) % digits.size()];
-    if (value + 1 < digits.size()) return;
-  }
+  auto place = ulid.find_last_not_of(digits.back());
+  if (place == std::string::npos) place = 0; // the last identifier of all: the next millennium's concern
+  ulid[place] = digits[(digits.find(ulid[place]) + 1) % digits.size()];
+  std::fill(ulid.begin() + static_cast<std::ptrdiff_t>(place) + 1, ulid.end(), digits.front());
 }
 
 } // namespace

@@ -18,8 +18,6 @@
 #include "server/job_messages.h"
 #include "server/log.h"
 
-extern char** environ;
-
 namespace orbis::server {
 namespace {
 
@@ -87,6 +85,7 @@ Child spawn(const std::vector<std::string>& command) {
   posix_spawnattr_setsigdefault(&attributes, &defaults);
 
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   pid_t pid = -1;
