@@ -68,8 +68,8 @@ template <class E, std::size_t N> std::string text_of(E value, const std::array<
 // The shortest text that reads back as the same number.
 std::string text_of(double value) {
   std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  return {buffer.data(), end};
+  const char* end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), static_cast<std::size_t>(end - buffer.data())};
 }
 
 } // namespace
@@ -82,7 +82,7 @@ void set_option(Options& options, std::string_view name, std::string_view value)
   } else if (name == "quality") {
     options.quality = choice<Quality>(name, value, qualities);
   } else if (name == "threshold") {
-    const double t = number<double>(name, value, 0.0, 1.0);
+    const auto t = number<double>(name, value, 0.0, 1.0);
     if (t <= 0.0 || t >= 1.0) refuse(name, value);
     options.threshold = t;
   } else if (name == "texture") {

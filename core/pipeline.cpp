@@ -32,47 +32,47 @@ std::vector<Vec3f> deliverable(std::span<const sphere::GridPoint> points) {
 
 } // namespace
 
-Result process(const Request& request, const Limits& limits, Progress& caller, const StageDump& dump) {
-  StageClock progress(caller);
+Result process(const Request& request, const Limits& limits, Progress& progress, const StageDump& dump) {
+  StageClock clock(progress);
   Result result;
   Report& report = result.report;
   report.options = request.options;
 
-  progress.report(Stage::decode, 0, 1);
+  clock.report(Stage::decode, 0, 1);
   const asset::Asset asset = asset::read_asset(request.model, request.files, limits);
   describe_input(asset, report);
 
-  progress.report(Stage::topology, 0, 1);
+  clock.report(Stage::topology, 0, 1);
   const Surface surface = make_surface(asset, report);
   dump_mesh(dump, "1-surface.obj", surface.mesh.positions, surface.mesh.triangles);
 
-  const std::vector<Vec3d> points = embed(surface, request.options, progress, report);
+  const std::vector<Vec3d> points = embed(surface, request.options, clock, report);
 
   const texture::AtlasLayout layout = texture::layout_for(request.options.texture_size);
-  progress.report(Stage::atlas, 0, 1);
-  const CutSphere sphere = snap_and_cut(surface, points, layout, progress, report);
+  clock.report(Stage::atlas, 0, 1);
+  const CutSphere sphere = snap_and_cut(surface, points, layout, clock, report);
   const std::vector<Vec3f> delivered = deliverable(sphere.points);
   report.distortion = sphere::measure_distortion(surface.mesh, delivered);
   const Delivery delivery = make_delivery(asset, surface, sphere.cut);
   dump_mesh(dump, "2-sphere.obj", delivered, surface.mesh.triangles);
   dump_charts(dump, "3-charts.obj", sphere.cut, layout);
 
-  progress.report(Stage::bake, 0, 1);
-  const texture::Image atlas = paint(request, limits, asset, surface, sphere.cut, delivery, layout, progress, report);
+  clock.report(Stage::bake, 0, 1);
+  const texture::Image atlas = paint(request, limits, asset, surface, sphere.cut, delivery, layout, clock, report);
   result.preview_png = preview(surface, sphere.cut, atlas);
 
-  progress.report(Stage::encode, 0, 1);
+  clock.report(Stage::encode, 0, 1);
   result.atlas_png = asset::encode_png(atlas);
   dump_bytes(dump, "4-atlas.png", result.atlas_png);
   dump_bytes(dump, "5-preview.png", result.preview_png);
   result.glb = asset::write_asset(asset, delivery.primitives, encode_atlas(atlas, result.atlas_png, request.options),
                                   extras_of(report), request.options.compression);
 
-  progress.report(Stage::certify, 0, 1);
+  clock.report(Stage::certify, 0, 1);
   certify_file(result.glb, asset, surface, delivery, report);
-  progress.report(Stage::certify, 1, 1);
+  clock.report(Stage::certify, 1, 1);
 
-  report.stages = progress.times();
+  report.stages = clock.times();
   report.peak_rss_bytes = peak_rss_bytes();
   return result;
 }

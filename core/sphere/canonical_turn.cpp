@@ -43,7 +43,7 @@ std::vector<Vec3d> canonically_turned(const mesh::TriangleMesh& mesh, std::vecto
   const std::vector<Vec3d> positions = mesh::unit_positions(mesh);
   const Eigen::Matrix3d m = correlation(positions, vertex_areas(mesh, positions), points);
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d s = svd.singularValues();
+  const Eigen::Vector3d& s = svd.singularValues();
   // The rotation is unique where s2 exceeds minus s3 (with the sign of the determinant).
   const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
   if (!(s[1] + sign * s[2] > 1e-9 * s[0])) return points;

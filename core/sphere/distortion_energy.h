@@ -37,7 +37,7 @@ struct StarTerm {
 };
 
 inline StarTerm make_term(const Vec3d& a, const Vec3d& b, const Reference& reference, std::size_t corner) {
-  const double area = double{reference.area};
+  const double area{reference.area};
   return {a,
           b,
           double{reference.cot[(corner + 1) % 3]},

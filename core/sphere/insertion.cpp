@@ -49,8 +49,9 @@ std::optional<Vec3d> point_in_kernel(std::span<const Vec3d> polygon) {
   const Vec3d& parent = polygon[0];
   if (squared_norm(sum) > 1e-6) {
     const Vec3d middle = normalized(sum);
-    for (double t = 1; t > 0.1; t *= 0.5) {
-      const Vec3d p = normalized(parent + t * (middle - parent));
+    Vec3d way = middle - parent;
+    for (int i = 0; i < 4; ++i, way *= 0.5) {
+      const Vec3d p = normalized(parent + way);
       if (sees_all(p, polygon)) return p;
     }
   }

@@ -83,7 +83,7 @@ private:
   void prepare_level(double regularisation);
   // Sweeps over what is active, all at first. Returns whether no step is worthwhile any more.
   bool relax(std::uint32_t sweeps, double worthwhile, Progress& progress);
-  Level level() const { return {vertices_, stars_, references_, coloring_}; }
+  [[nodiscard]] Level level() const { return {vertices_, stars_, references_, coloring_}; }
 
   Hierarchy hierarchy_;
   std::vector<Vec3d> positions_; // of the surface

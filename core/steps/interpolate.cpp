@@ -46,8 +46,11 @@ double blend(const Attribute& a, const VertexSource& s, std::uint32_t c) {
 }
 
 std::uint32_t nearest_corner(const VertexSource& s) {
-  const auto largest = std::ranges::max_element(s.weights);
-  return s.corners[static_cast<std::size_t>(largest - s.weights.begin())];
+  std::size_t nearest = 0;
+  for (std::size_t k = 1; k < 3; ++k) {
+    if (s.weights[k] > s.weights[nearest]) nearest = k;
+  }
+  return s.corners[nearest];
 }
 
 void blend_vertex(const Attribute& a, const VertexSource& s, Attribute& out, std::size_t w) {
