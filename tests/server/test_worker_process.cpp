@@ -116,13 +116,13 @@ TEST_CASE_FIXTURE(Parent, "a child that talks nonsense is not believed") {
         "echo '{\"error\":{\"code\":\"queue-full\",\"message\":\"\",\"where\":\"\"}}'",
         "head -c 200000 /dev/zero | tr '\\0' x"}) {
     CAPTURE(message);
-    CHECK(error_of(run(std::string(message) + "; sleep 1000")) == ErrorCode::internal);
+    CHECK(error_of(run(std::string(message) + "; exec sleep 1000")) == ErrorCode::internal);
   }
 }
 
 TEST_CASE_FIXTURE(Parent, "results may not be larger than the operator allows") {
   task.limits.output_bytes = 10;
-  CHECK(error_of(run(R"(echo '{"file":{"name":"big","bytes":11}}'; sleep 1000)")) == ErrorCode::too_large);
+  CHECK(error_of(run(R"(echo '{"file":{"name":"big","bytes":11}}'; exec sleep 1000)")) == ErrorCode::too_large);
 }
 
 TEST_CASE_FIXTURE(Parent, "a stop request ends a child that obeys, and one that does not") {
