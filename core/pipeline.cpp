@@ -4,14 +4,15 @@
 
 #include "core/asset/asset.h"
 #include "core/asset/image_codec.h"
-#include "core/sphere/distortion.h"
 #include "core/steps/delivery.h"
 #include "core/steps/dump.h"
+#include "core/steps/embed.h"
+#include "core/steps/measure.h"
 #include "core/steps/paint.h"
+#include "core/steps/snap_and_cut.h"
 #include "core/steps/stage_clock.h"
 #include "core/steps/summary.h"
 #include "core/steps/surface.h"
-#include "core/steps/unfold_and_cut.h"
 #include "core/texture/atlas.h"
 
 namespace orbis {
@@ -52,7 +53,7 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   clock.report(Stage::atlas, 0, 1);
   const CutSphere sphere = snap_and_cut(surface, points, layout, clock, report);
   const std::vector<Vec3f> delivered = deliverable(sphere.points);
-  report.distortion = sphere::measure_distortion(surface.mesh, delivered);
+  report.distortion = measure(surface, delivered);
   const Delivery delivery = make_delivery(asset, surface, sphere.cut);
   dump_mesh(dump, "2-sphere.obj", delivered, surface.mesh.triangles);
   dump_charts(dump, "3-charts.obj", sphere.cut, layout);
@@ -69,7 +70,7 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
                                   extras_of(report), request.options.compression);
 
   clock.report(Stage::certify, 0, 1);
-  certify_file(result.glb, asset, surface, delivery, report);
+  certify_file(result.glb, asset, surface, sphere.points, delivery, report);
   clock.report(Stage::certify, 1, 1);
 
   report.stages = clock.times();

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/mesh/weld.h"
@@ -30,26 +32,90 @@ std::vector<Vec3f> vectors(const asset::Primitive& primitive, std::string_view n
   return out;
 }
 
+// What the file says, all primitives in a row.
 struct ReadBack {
-  std::vector<std::vector<Vec3f>> sphere, position; // by primitive
-  std::vector<Vec3f> all_sphere;                    // in a row
-  std::vector<mesh::Triangle> triangles;            // indices into the row
+  std::vector<std::uint32_t> first; // primitive of the input -> its first vertex in the row
+  std::vector<Vec3f> sphere, position;
+  std::vector<mesh::Triangle> triangles;   // indices into the row
+  std::vector<std::uint32_t> component_of; // triangle -> component of the surface
 };
 
-ReadBack read_back(std::span<const std::byte> glb, const asset::Asset& input) {
+ReadBack read_back(std::span<const std::byte> glb, const asset::Asset& input, const Delivery& delivery) {
   Limits generous; // our own file: it is as large as it is
   generous.max_bytes = generous.max_triangles = generous.max_vertices = generous.max_image_pixels = UINT64_MAX / 64;
   const asset::Asset file = asset::read_asset(glb, {}, generous);
   ReadBack out;
-  for (const asset::Primitive& p : input.primitives) {
-    const asset::Primitive& q = counterpart(file, p);
-    const auto first = static_cast<mesh::Index>(out.all_sphere.size());
-    out.sphere.push_back(vectors(q, "_SPHERE"));
-    out.position.push_back(q.positions());
-    out.all_sphere.insert(out.all_sphere.end(), out.sphere.back().begin(), out.sphere.back().end());
-    for (std::size_t i = 0; i + 2 < q.indices.size(); i += 3) {
-      out.triangles.push_back({first + q.indices[i], first + q.indices[i + 1], first + q.indices[i + 2]});
+  for (std::size_t i = 0; i < input.primitives.size(); ++i) {
+    const auto first = static_cast<mesh::Index>(out.sphere.size());
+    out.first.push_back(first);
+    if (delivery.primitives[i].indices.empty()) continue;
+    const asset::Primitive& q = counterpart(file, input.primitives[i]);
+    const std::vector<Vec3f> sphere = vectors(q, "_SPHERE"), position = q.positions();
+    out.sphere.insert(out.sphere.end(), sphere.begin(), sphere.end());
+    out.position.insert(out.position.end(), position.begin(), position.end());
+    const std::vector<std::uint32_t>& component = delivery.component_of[i];
+    if (q.indices.size() != 3 * component.size()) refuse("a primitive has not the triangles that were written");
+    for (std::size_t t = 0; t < component.size(); ++t) {
+      out.triangles.push_back({first + q.indices[3 * t], first + q.indices[3 * t + 1], first + q.indices[3 * t + 2]});
+      out.component_of.push_back(component[t]);
     }
+  }
+  return out;
+}
+
+// The delivered triangles of each component on its sphere, not joined yet.
+std::vector<mesh::TriangleMesh> by_component(const ReadBack& file, std::size_t components) {
+  std::vector<mesh::TriangleMesh> out(components);
+  std::vector<mesh::Index> place(file.sphere.size(), no_primitive); // no vertex serves two components
+  for (std::size_t t = 0; t < file.triangles.size(); ++t) {
+    mesh::TriangleMesh& piece = out[file.component_of[t]];
+    mesh::Triangle placed{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      mesh::Index& at = place[file.triangles[t][k]];
+      if (at == no_primitive) {
+        at = static_cast<mesh::Index>(piece.positions.size());
+        piece.positions.push_back(file.sphere[file.triangles[t][k]]);
+      }
+      placed[k] = at;
+    }
+    piece.triangles.push_back(placed);
+  }
+  return out;
+}
+
+// One certificate for all components: counts are added up, and each property is that of the worst.
+void add(const sphere::Certificate& one, bool first, sphere::Certificate& all) {
+  if (first) {
+    all = one;
+    return;
+  }
+  all.closed = all.closed && one.closed;
+  all.manifold = all.manifold && one.manifold;
+  all.connected = all.connected && one.connected;
+  if (one.euler_characteristic != 2) all.euler_characteristic = one.euler_characteristic;
+  all.triangles += one.triangles;
+  all.vertices += one.vertices;
+  all.folded += one.folded;
+  all.off_grid += one.off_grid;
+  all.max_radius_error = std::max(all.max_radius_error, one.max_radius_error);
+  if (std::abs(one.degree - 1) > std::abs(all.degree - 1)) all.degree = one.degree;
+  all.valid = all.valid && one.valid;
+}
+
+// The component's points: from the file where it has them, from memory for the caps.
+std::vector<Vec3f> points_of(const Component& c, const Surface& surface, std::span<const sphere::GridPoint> points,
+                             const Delivery& delivery, const ReadBack& file) {
+  std::vector<Vec3f> out;
+  out.reserve(c.vertices);
+  for (std::uint32_t v = c.first_vertex; v < c.end_vertex(); ++v) {
+    if (v >= c.first_vertex + c.input_vertices) {
+      out.push_back(sphere::from_grid(points[v]));
+      continue;
+    }
+    const OutputVertex o = delivery.of_surface_vertex[v];
+    const std::size_t at = file.first[o.primitive] + o.vertex;
+    out.push_back(file.sphere.at(at));
+    if (!(file.position.at(at) == surface.mesh.positions[v])) refuse("a vertex has moved");
   }
   return out;
 }
@@ -57,26 +123,25 @@ ReadBack read_back(std::span<const std::byte> glb, const asset::Asset& input) {
 } // namespace
 
 void certify_file(std::span<const std::byte> glb, const asset::Asset& asset, const Surface& surface,
-                  const Delivery& delivery, Report& report) {
-  const ReadBack file = read_back(glb, asset);
+                  std::span<const sphere::GridPoint> points, const Delivery& delivery, Report& report) {
+  const ReadBack file = read_back(glb, asset, delivery);
+  const std::vector<mesh::TriangleMesh> delivered = by_component(file, surface.components.size());
+  for (std::size_t i = 0; i < surface.components.size(); ++i) {
+    const Component& c = surface.components[i];
+    const sphere::Certificate whole =
+        sphere::certify(points_of(c, surface, points, delivery, file), mesh_of(surface, c).triangles);
+    if (!whole.valid) refuse(whole.failure());
+    add(whole, i == 0, report.certificate);
 
-  std::vector<Vec3f> points;
-  for (std::size_t v = 0; v < surface.mesh.positions.size(); ++v) {
-    const OutputVertex o = delivery.of_surface_vertex[v];
-    points.push_back(file.sphere[o.primitive].at(o.vertex));
-    if (!(file.position[o.primitive].at(o.vertex) == surface.mesh.positions[v])) refuse("a vertex has moved");
+    // One sphere point, one point of the surface: joined by equal _SPHERE, the delivered triangles must close up again.
+    const mesh::Welded joined = mesh::weld(delivered[i].positions, delivered[i].triangles);
+    if (!joined.degenerate.empty()) refuse("a delivered triangle has no area on the sphere");
+    const sphere::Certificate cut = sphere::certify(joined.mesh.positions, joined.mesh.triangles);
+    if (!cut.valid) refuse(cut.failure());
+    add(cut, i == 0, report.cut_certificate);
   }
-  report.certificate = sphere::certify(points, surface.mesh.triangles);
-  if (!report.certificate.valid) refuse(report.certificate.failure());
-
-  // One sphere point, one point of the surface: joined by equal _SPHERE, the delivered triangles must close up again.
-  const mesh::Welded joined = mesh::weld(file.all_sphere, file.triangles);
-  if (!joined.degenerate.empty()) refuse("a delivered triangle has no area on the sphere");
-  report.cut_certificate = sphere::certify(joined.mesh.positions, joined.mesh.triangles);
-  if (!report.cut_certificate.valid) refuse(report.cut_certificate.failure());
-
   report.output_triangles = file.triangles.size();
-  report.output_vertices = file.all_sphere.size();
+  report.output_vertices = file.sphere.size();
 }
 
 } // namespace orbis

@@ -27,13 +27,17 @@ public:
       : surface_(surface), cut_(cut), seen_(cut.vertices.size(), false) {
     out_.primitives.resize(asset.primitives.size());
     out_.sources.resize(asset.primitives.size());
+    out_.component_of.resize(asset.primitives.size());
     out_.of_cut_vertex.resize(cut.vertices.size());
     out_.of_surface_vertex.resize(surface.mesh.positions.size());
   }
 
   Delivery run() {
+    std::uint32_t component = 0;
     for (std::size_t t = 0; t < cut_.triangles.size(); ++t) {
+      while (cut_.parent[t] >= surface_.components[component].end_triangle()) ++component;
       const std::uint32_t primitive = surface_.primitive_of[cut_.parent[t]];
+      out_.component_of[primitive].push_back(component);
       for (const mesh::Index v : cut_.triangles[t]) {
         if (!seen_[v]) add(v, primitive);
         out_.primitives[primitive].indices.push_back(out_.of_cut_vertex[v].vertex);

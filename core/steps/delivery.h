@@ -22,17 +22,19 @@ struct Delivery {
   std::vector<asset::NewPrimitive> primitives;    // one per primitive of the asset
   std::vector<std::vector<VertexSource>> sources; // where their vertices come from
   std::vector<OutputVertex> of_cut_vertex;        // cut vertex -> output vertex
-  std::vector<OutputVertex> of_surface_vertex;    // vertex of the surface -> one of its copies in the output
+  std::vector<OutputVertex> of_surface_vertex; // vertex of the surface -> one of its copies in the output; not of caps
+  std::vector<std::vector<std::uint32_t>> component_of; // primitive -> its output triangles' components
 };
 
 // Every attribute of the input at the vertices of the cut mesh, with TEXCOORD_n (the atlas; n: the first that is free)
 // and _SPHERE added.
 [[nodiscard]] Delivery make_delivery(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut);
 
-// Reads the finished file and proves the map on what it says: report.certificate at the input's connectivity,
-// report.cut_certificate on the delivered triangles, joined where _SPHERE is equal to the bit; and every vertex of the
-// surface still at its position. Throws Error{not_certified} where any of it fails.
+// Reads the finished file and proves each component's map on what it says: report.certificate at the input's
+// connectivity (the caps' own points, which no file holds, are those of `points`), report.cut_certificate on the
+// delivered triangles, joined where _SPHERE is equal to the bit; and every vertex of the surface still at its position.
+// points: one per vertex of the surface. Throws Error{not_certified} where any of it fails.
 void certify_file(std::span<const std::byte> glb, const asset::Asset& asset, const Surface& surface,
-                  const Delivery& delivery, Report& report);
+                  std::span<const sphere::GridPoint> points, const Delivery& delivery, Report& report);
 
 } // namespace orbis

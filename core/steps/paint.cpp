@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/asset/image_codec.h"
+#include "core/steps/placement.h"
 #include "core/texture/bake.h"
 #include "core/texture/preview.h"
 
@@ -119,6 +120,33 @@ Image paint_own_colors(const asset::Asset& asset, const OwnColors& own, const Su
                                   progress);
 }
 
+// Faces that hold a part of a component.
+std::uint64_t charts_in(const Surface& surface, const texture::CutMesh& cut) {
+  std::uint64_t charts = 0;
+  std::size_t t = 0;
+  for (const Component& c : surface.components) {
+    std::array<bool, texture::face_count> used{};
+    for (; t < cut.parent.size() && cut.parent[t] < c.end_triangle(); ++t) used[cut.face[t]] = true;
+    charts += static_cast<std::uint64_t>(std::ranges::count(used, true));
+  }
+  return charts;
+}
+
+// The same picture in each cell of the grid.
+Image tiled(const Image& tile, const texture::AtlasLayout& layout, std::size_t side) {
+  if (side == 1) return tile;
+  Image out{layout.width, layout.height, tile.channels, {}};
+  out.pixels.resize(std::size_t{out.width} * out.height * out.channels);
+  for (std::uint32_t y = 0; y < out.height; ++y) {
+    for (std::uint32_t x = 0; x < out.width; ++x) {
+      const auto u = static_cast<std::uint32_t>(std::uint64_t{x} * side % out.width * tile.width / out.width);
+      const auto v = static_cast<std::uint32_t>(std::uint64_t{y} * side % out.height * tile.height / out.height);
+      std::copy_n(tile.at(u, v), tile.channels, out.pixels.data() + (std::size_t{y} * out.width + x) * out.channels);
+    }
+  }
+  return out;
+}
+
 } // namespace
 
 Image paint(const Request& request, const Limits& limits, const asset::Asset& asset, const Surface& surface,
@@ -128,16 +156,16 @@ Image paint(const Request& request, const Limits& limits, const asset::Asset& as
   report.atlas.height = layout.height;
   report.atlas.gutter = layout.gutter;
   report.atlas.utilisation = layout.utilisation();
-  std::array<bool, texture::face_count> used{};
-  for (const texture::Face f : cut.face) used[f] = true;
-  report.atlas.charts = static_cast<std::uint64_t>(std::ranges::count(used, true));
+  report.atlas.charts = charts_in(surface, cut);
   report.atlas.cut_triangles = cut.cut_triangles;
   report.atlas.added_vertices = cut.points - surface.mesh.positions.size();
 
+  const std::size_t side = cells_for(surface.components.size()).side;
+  const texture::AtlasLayout cell = texture::layout_for(std::max(64U, layout.width / static_cast<std::uint32_t>(side)));
   const TextureSource wanted = request.options.texture;
   if (wanted == TextureSource::cubemap) {
     report.atlas.source = "cubemap";
-    return paint_cube_map(request, limits, layout, progress);
+    return tiled(paint_cube_map(request, limits, cell, progress), layout, side);
   }
   if (wanted != TextureSource::pattern) {
     const OwnColors own = own_colors(asset, limits, wanted == TextureSource::base_color, report);
@@ -153,7 +181,7 @@ Image paint(const Request& request, const Limits& limits, const asset::Asset& as
     }
   }
   report.atlas.source = "pattern";
-  return texture::bake_pattern(layout, progress);
+  return tiled(texture::bake_pattern(cell, progress), layout, side);
 }
 
 asset::NewImage encode_atlas(const Image& atlas, const std::vector<std::byte>& png, const Options& options) {

@@ -122,6 +122,22 @@ TEST_CASE("models that are not one closed surface of genus 0 are refused") {
   CHECK(code_of(glb_of(open)) == ErrorCode::not_genus_zero);
 }
 
+TEST_CASE("several closed components come back in one file, each certified on a sphere of its own") {
+  mesh::TriangleMesh both = shapes::bumpy_sphere(3);
+  const auto first = static_cast<mesh::Index>(both.positions.size());
+  const mesh::TriangleMesh small = shapes::bipyramid(7);
+  for (const Vec3f& p : small.positions) both.positions.push_back(p + Vec3f{9, 0, 0});
+  for (const auto& [i, j, k] : small.triangles) both.triangles.push_back({first + i, first + j, first + k});
+  const std::vector<std::byte> glb = glb_of(both);
+  const Result result = run(glb, with("threads", "1"));
+  CHECK(result.report.topology.components == 2);
+  CHECK(result.report.certificate.valid);
+  CHECK(result.report.certificate.triangles == both.triangles.size());
+  CHECK(result.report.cut_certificate.valid);
+  CHECK(area_of(read(result.glb).primitives[0]) == doctest::Approx(area_of(read(glb).primitives[0])).epsilon(1e-6));
+  CHECK(run(glb, with("threads", "3")).glb == result.glb);
+}
+
 TEST_CASE("a surface without extent is refused") {
   mesh::TriangleMesh point = shapes::sphere(2);
   for (Vec3f& p : point.positions) p = {1, 2, 3};

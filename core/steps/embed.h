@@ -1,0 +1,18 @@
+// Every component of the surface on a sphere of its own.
+#pragma once
+
+#include <vector>
+
+#include "core/report.h"
+#include "core/steps/surface.h"
+
+namespace orbis {
+
+// The unit vectors of the map in doubles, one per vertex of the surface, by the objective that the options name; each
+// sphere is turned to its component's directions. Small components are shared out among the threads, large ones use all
+// threads one after the other; the result does not depend on their number. Fills the report's times and "Minimum" (Eq.
+// 3), sums over the components.
+[[nodiscard]] std::vector<Vec3d> embed(const Surface& surface, const Options& options, Progress& progress,
+                                       Report& report);
+
+} // namespace orbis
