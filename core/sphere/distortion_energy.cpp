@@ -15,7 +15,7 @@ struct Step {
 // -H^-1 g with the eigenvalues of H replaced by their magnitudes, none below a part of the largest.
 Step descent_step(const Expansion& e) {
   const double mean = 0.5 * (e.hxx + e.hyy), half = 0.5 * (e.hxx - e.hyy);
-  const double radius = std::hypot(half, e.hxy);
+  const double radius = std::sqrt(half * half + e.hxy * e.hxy);
   if (mean - radius > smallest_eigenvalue * (mean + radius)) {
     const double det = e.hxx * e.hyy - e.hxy * e.hxy;
     return {-(e.hyy * e.gx - e.hxy * e.gy) / det, -(e.hxx * e.gy - e.hxy * e.gx) / det};
@@ -30,7 +30,7 @@ Step descent_step(const Expansion& e) {
     ex = radius + half;
     ey = e.hxy;
   }
-  const double length = std::hypot(ex, ey);
+  const double length = std::sqrt(ex * ex + ey * ey);
   if (length > 0) {
     ex /= length;
     ey /= length;

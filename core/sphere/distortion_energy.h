@@ -49,9 +49,13 @@ inline StarTerm make_term(const Vec3d& a, const Vec3d& b, const Reference& refer
 // The terms of the star of v; `star` is overwritten.
 inline void gather_star(mesh::Index v, const StarTable& stars, std::span<const Reference> references,
                         std::span<const Vec3d> points, std::vector<StarTerm>& star) {
-  star.clear();
-  for (const StarCorner& c : stars[v]) {
-    star.push_back(make_term(points[c.next], points[c.previous], references[c.slot()], c.corner % 3));
+  const std::span<const StarCorner> corners = stars[v];
+  star.resize(corners.size());
+  const Vec3d* a = &points[corners[0].next];
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Vec3d* b = &points[previous_in(corners, k)];
+    star[k] = make_term(*a, *b, references[corners[k].triangle()], corners[k].place());
+    a = b;
   }
 }
 

@@ -16,22 +16,22 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/mesh/spatial_order.h"
 #include "core/mesh/unit_positions.h"
 #include "core/sphere/embedding.h"
 #include "core/sphere/global_step.h"
 #include "core/sphere/hierarchical_basis.h"
 #include "core/sphere/hierarchy.h"
 #include "core/sphere/insertion.h"
-#include "core/sphere/reference.h"
+#include "core/sphere/level_mesh.h"
 #include "core/sphere/relaxation.h"
-#include "core/sphere/star_table.h"
 
 namespace orbis::sphere {
 namespace {
 
 using mesh::Index;
 
-constexpr std::size_t insertion_grain = 512;
+constexpr std::size_t insertion_grain = 512, copy_grain = 8192;
 
 // Coarse levels have slivers that the surface does not have: their shapes are rounded off. The finest level is taken as
 // it is, but for triangles without area.
@@ -69,45 +69,39 @@ constexpr Effort effort_of(Quality quality) {
 
 class Refinement {
 public:
-  Refinement(Hierarchy hierarchy, std::vector<Vec3d> positions, mesh::ThreadPool& pool);
+  Refinement(Hierarchy hierarchy, std::vector<Vec3d> positions, const Effort& effort, mesh::ThreadPool& pool);
   void refine(Progress& progress);
-  void optimise(const Effort& effort, Progress& progress);
+  void optimise(Progress& progress);
   [[nodiscard]] std::vector<Vec3d> points() && { return std::move(points_); }
   std::uint64_t relaxations = 0;
   bool converged = true;
 
 private:
   void insert_round(std::size_t round);
-  void keep_stiffness(std::size_t round);
   [[nodiscard]] bool insert(std::size_t removal);
-  void prepare_level(double regularisation);
+  void relax_level(std::uint32_t sweeps, double worthwhile, Progress& progress);
+  void keep_stiffness(std::size_t round);
   // Sweeps over what is active, all at first. Returns whether no step is worthwhile any more.
-  bool relax(std::uint32_t sweeps, double worthwhile, Progress& progress);
-  [[nodiscard]] Level level() const { return {vertices_, stars_, references_, coloring_}; }
+  bool relax(std::uint32_t sweeps, double worthwhile, std::span<Vec3d> points, Progress& progress);
 
   Hierarchy hierarchy_;
   std::vector<Vec3d> positions_; // of the surface
+  Effort effort_;
   mesh::ThreadPool& pool_;
-  std::vector<Vec3d> points_;   // on the sphere
-  std::vector<Index> vertices_; // live
-  std::vector<std::uint32_t> slots_;
-  std::vector<Reference> references_; // by slot
-  StarTable stars_;
+  std::vector<Vec3d> points_; // on the sphere
+  LevelMesh level_;
+  std::vector<Vec3d> level_points_;
+  SweepOrder order_;
   Active active_;
   HierarchicalBasis basis_;
-  Coloring coloring_;
 };
 
-Refinement::Refinement(Hierarchy hierarchy, std::vector<Vec3d> positions, mesh::ThreadPool& pool)
-    : hierarchy_(std::move(hierarchy)), positions_(std::move(positions)), pool_(pool), points_(positions_.size()),
-      references_(hierarchy_.triangles.size()), active_(positions_.size(), 0), basis_(hierarchy_, pool) {
-  vertices_.assign(hierarchy_.tetrahedron.begin(), hierarchy_.tetrahedron.end());
-  slots_.assign(hierarchy_.tetrahedron_slots.begin(), hierarchy_.tetrahedron_slots.end());
-  std::ranges::sort(vertices_);
-  std::ranges::sort(slots_);
-  const mesh::Triangle& t = hierarchy_.triangles[slots_[0]];
+Refinement::Refinement(Hierarchy hierarchy, std::vector<Vec3d> positions, const Effort& effort, mesh::ThreadPool& pool)
+    : hierarchy_(std::move(hierarchy)), positions_(std::move(positions)), effort_(effort), pool_(pool),
+      points_(positions_.size()), level_(hierarchy_), basis_(hierarchy_, pool) {
+  const mesh::Triangle& t = hierarchy_.triangles[hierarchy_.tetrahedron_slots[0]];
   Index apex = 0;
-  for (const Index v : vertices_) {
+  for (const Index v : hierarchy_.tetrahedron) {
     if (v != t[0] && v != t[1] && v != t[2]) apex = v;
   }
   // The regular tetrahedron, its first face counter-clockwise seen from outside.
@@ -140,74 +134,80 @@ void Refinement::insert_round(std::size_t round) {
   if (!all_placed) {
     throw Error(ErrorCode::not_certified, "a vertex found no place on the sphere that sees its whole ring");
   }
-  // Both lists stay in the order of the input, where neighbours are close together.
-  const auto old_vertices = static_cast<std::ptrdiff_t>(vertices_.size());
-  const auto old_slots = static_cast<std::ptrdiff_t>(slots_.size());
-  for (std::uint32_t i = first; i < end; ++i) {
-    vertices_.push_back(hierarchy_.removed[i]);
-    slots_.push_back(hierarchy_.slots(i).front());
-    slots_.push_back(hierarchy_.slots(i).back());
-  }
-  std::sort(slots_.begin() + old_slots, slots_.end());
-  std::inplace_merge(slots_.begin(), slots_.begin() + old_slots, slots_.end());
-  std::inplace_merge(vertices_.begin(), vertices_.begin() + old_vertices, vertices_.end());
+  level_.add_round(hierarchy_, round);
 }
 
-void Refinement::prepare_level(double regularisation) {
-  compute_references(positions_, hierarchy_.triangles, slots_, regularisation, pool_, references_);
-  stars_.build(hierarchy_.triangles, slots_, positions_.size());
-  coloring_.build(vertices_, stars_);
-}
-
-bool Refinement::relax(std::uint32_t sweeps, double worthwhile, Progress& progress) {
-  for (const Index v : vertices_) active_[v] = 1;
+bool Refinement::relax(std::uint32_t sweeps, double worthwhile, std::span<Vec3d> points, Progress& progress) {
+  active_.assign(points.size(), 1);
   for (std::uint32_t i = 0; i < sweeps; ++i) {
     progress.check();
-    const std::size_t moves = relax_active(level(), worthwhile, points_, active_, pool_);
+    const std::size_t moves =
+        relax_active({level_.stars(), level_.references(), order_}, worthwhile, points, active_, pool_);
     relaxations += moves;
     if (moves == 0) return true;
   }
   return false;
 }
 
+void Refinement::relax_level(std::uint32_t sweeps, double worthwhile, Progress& progress) {
+  const std::span<const Index> vertices = level_.vertices();
+  level_points_.resize(vertices.size());
+  pool_.for_blocks(vertices.size(), copy_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) level_points_[i] = points_[vertices[i]];
+  });
+  relax(sweeps, worthwhile, level_points_, progress);
+  pool_.for_blocks(vertices.size(), copy_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) points_[vertices[i]] = level_points_[i];
+  });
+}
+
 void Refinement::refine(Progress& progress) {
-  progress.report(Stage::refine, vertices_.size(), points_.size());
+  progress.report(Stage::refine, level_.vertices().size(), points_.size());
   for (std::size_t round = hierarchy_.rounds(); round-- > 0;) {
     insert_round(round);
-    prepare_level(round == 0 ? fine_regularisation : coarse_regularisation);
-    const auto live = static_cast<double>(vertices_.size());
-    relax(static_cast<std::uint32_t>(std::clamp(sweep_budget / live, fewest_sweeps, most_sweeps)),
-          std::clamp(worthwhile_gain * live / small_level, smallest_gain, worthwhile_gain), progress);
-    keep_stiffness(round);
-    progress.report(Stage::refine, vertices_.size(), points_.size());
+    level_.build(hierarchy_, positions_, round == 0 ? fine_regularisation : coarse_regularisation, pool_);
+    order_.build(level_.stars(), pool_);
+    const auto live = static_cast<double>(level_.vertices().size());
+    relax_level(static_cast<std::uint32_t>(std::clamp(sweep_budget / live, fewest_sweeps, most_sweeps)),
+                std::clamp(worthwhile_gain * live / small_level, smallest_gain, worthwhile_gain), progress);
+    if (effort_.steps > 0) keep_stiffness(round);
+    progress.report(Stage::refine, level_.vertices().size(), points_.size());
   }
 }
 
 // Of the tetrahedron with the first round, later of the round's vertices: at the level that they were inserted at.
 void Refinement::keep_stiffness(std::size_t round) {
   const std::uint32_t begin = hierarchy_.round_first[round], end = hierarchy_.round_first[round + 1];
-  std::vector<StarTerm> star;
-  const auto keep = [&](Index v) {
-    gather_star(v, stars_, references_, points_, star);
-    basis_.keep_stiffness(v, expand(star, points_[v], TangentFrame(points_[v])), points_[v]);
+  const auto keep = [&](std::span<const Index> vertices) {
+    pool_.for_blocks(vertices.size(), insertion_grain, [&](std::size_t from, std::size_t to) {
+      std::vector<StarTerm> star;
+      for (const Index v : vertices.subspan(from, to - from)) {
+        gather_star(level_.number_of(v), level_.stars(), level_.references(), level_points_, star);
+        basis_.keep_stiffness(v, expand(star, points_[v], TangentFrame(points_[v])), points_[v]);
+      }
+    });
   };
-  for (std::uint32_t i = begin; i < end; ++i) keep(hierarchy_.removed[i]);
-  if (round + 1 == hierarchy_.rounds()) std::ranges::for_each(hierarchy_.tetrahedron, keep);
+  keep(std::span(hierarchy_.removed).subspan(begin, end - begin));
+  if (round + 1 == hierarchy_.rounds()) keep(hierarchy_.tetrahedron);
 }
 
-void Refinement::optimise(const Effort& effort, Progress& progress) {
-  const auto total = static_cast<std::uint64_t>(effort.steps) + 1;
+void Refinement::optimise(Progress& progress) {
+  const auto total = static_cast<std::uint64_t>(effort_.steps) + 1;
   progress.report(Stage::optimise, 0, total);
-  if (hierarchy_.rounds() == 0) prepare_level(fine_regularisation); // the input is a tetrahedron
-  converged = relax(final_sweeps, final_gain, progress);
-  GlobalStep global({hierarchy_.triangles, stars_, references_}, basis_, pool_);
-  for (int i = 0; i < effort.steps && hierarchy_.rounds() > 0; ++i) {
+  if (hierarchy_.rounds() == 0) { // the input is a tetrahedron
+    level_.build(hierarchy_, positions_, fine_regularisation, pool_);
+    order_.build(level_.stars(), pool_);
+  }
+  // From here on the level is the whole mesh: its numbers are the hierarchy's.
+  converged = relax(final_sweeps, final_gain, points_, progress);
+  GlobalStep global({level_.triangles(), level_.stars(), level_.references()}, basis_, pool_);
+  for (int i = 0; i < effort_.steps && hierarchy_.rounds() > 0; ++i) {
     progress.report(Stage::optimise, static_cast<std::uint64_t>(i) + 1, total);
     progress.check();
-    const StepOutcome step = global.take(effort.iterations, points_);
-    const bool settled = relax(final_sweeps, final_gain, progress);
+    const StepOutcome step = global.take(effort_.iterations, points_);
+    const bool settled = relax(final_sweeps, final_gain, points_, progress);
     // A step that a fold cut short gains little because of one place, which the relaxation has just mended.
-    const bool enough = step.gain < effort.enough && (step.length == 0 || step.length == 1);
+    const bool enough = step.gain < effort_.enough && (step.length == 0 || step.length == 1);
     converged = settled && enough;
     if (enough) break;
   }
@@ -218,24 +218,37 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
+// The mesh along a Hilbert curve: its parts are then close together in memory on every level, and the result does not
+// depend on how the input is numbered.
+mesh::TriangleMesh reordered(const mesh::TriangleMesh& mesh, std::span<const Index> order, mesh::ThreadPool& pool) {
+  mesh::TriangleMesh out{{}, mesh::renumbered(mesh.triangles, order, pool)};
+  out.positions.reserve(order.size());
+  for (const Index v : order) out.positions.push_back(mesh.positions[v]);
+  return out;
+}
+
 } // namespace
 
 Embedding embed_isometric(const mesh::TriangleMesh& mesh, Quality quality, std::uint32_t threads, Progress& progress) {
   mesh::ThreadPool pool(threads);
   Embedding out;
   auto start = std::chrono::steady_clock::now();
-  Hierarchy hierarchy = build_hierarchy(mesh, pool, progress);
+  const std::vector<Index> order = mesh::hilbert_order(mesh::unit_positions(mesh), pool);
+  const mesh::TriangleMesh ordered = reordered(mesh, order, pool);
+  Hierarchy hierarchy = build_hierarchy(ordered, pool, progress);
   out.t1_ms = milliseconds_since(start);
   start = std::chrono::steady_clock::now();
-  Refinement refinement(std::move(hierarchy), mesh::unit_positions(mesh), pool);
+  Refinement refinement(std::move(hierarchy), mesh::unit_positions(ordered), effort_of(quality), pool);
   refinement.refine(progress);
   out.t2_ms = milliseconds_since(start);
   start = std::chrono::steady_clock::now();
-  refinement.optimise(effort_of(quality), progress);
+  refinement.optimise(progress);
   out.t3_ms = milliseconds_since(start);
   out.relaxations = refinement.relaxations;
   out.converged = refinement.converged;
-  out.points = std::move(refinement).points();
+  const std::vector<Vec3d> points = std::move(refinement).points();
+  out.points.resize(points.size());
+  for (std::size_t i = 0; i < order.size(); ++i) out.points[order[i]] = points[i];
   return out;
 }
 

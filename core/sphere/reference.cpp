@@ -27,23 +27,23 @@ Reference reference_of(const Vec3d& p0, const Vec3d& p1, const Vec3d& p2, double
 } // namespace
 
 void compute_references(std::span<const Vec3d> positions, std::span<const mesh::Triangle> triangles,
-                        std::span<const std::uint32_t> live, double regularisation, mesh::ThreadPool& pool,
-                        std::vector<Reference>& out) {
-  const double total = pool.sum_blocks(live.size(), grain, [&](std::size_t begin, std::size_t end) {
+                        double regularisation, mesh::ThreadPool& pool, std::vector<Reference>& out) {
+  out.resize(triangles.size());
+  const double total = pool.sum_blocks(triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      const mesh::Triangle& t = triangles[live[i]];
-      out[live[i]] = reference_of(positions[t[0]], positions[t[1]], positions[t[2]], regularisation);
-      sum += double{out[live[i]].area};
+      const mesh::Triangle& t = triangles[i];
+      out[i] = reference_of(positions[t[0]], positions[t[1]], positions[t[2]], regularisation);
+      sum += double{out[i].area};
     }
     return sum;
   });
-  const double mean = 4 * std::numbers::pi / static_cast<double>(live.size());
+  const double mean = 4 * std::numbers::pi / static_cast<double>(triangles.size());
   const double scale = total > 0 ? 4 * std::numbers::pi / total : 0;
   const double floor = total > 0 ? mean * smallest_area : mean;
-  pool.for_blocks(live.size(), grain, [&](std::size_t begin, std::size_t end) {
+  pool.for_blocks(triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      float& area = out[live[i]].area;
+      float& area = out[i].area;
       area = static_cast<float>(std::max(floor, double{area} * scale));
     }
   });

@@ -17,14 +17,12 @@ struct Reference {
   float area = 0;
 };
 
-// References of the triangles in the `live` slots, from the positions at this level of detail; other slots are left
-// alone.
+// References of the triangles of one level of detail.
 //   regularisation  this part of the mean squared edge length is added to a triangle's three squared lengths, which
 //                   turns slivers into triangles with finite cotangents; 0 < regularisation
 // Areas below a millionth of the mean are raised to it: what is smaller could not be told apart on the grid of the
 // delivered coordinates.
 void compute_references(std::span<const Vec3d> positions, std::span<const mesh::Triangle> triangles,
-                        std::span<const std::uint32_t> live, double regularisation, mesh::ThreadPool& pool,
-                        std::vector<Reference>& out);
+                        double regularisation, mesh::ThreadPool& pool, std::vector<Reference>& out);
 
 } // namespace orbis::sphere

@@ -1,25 +1,73 @@
 #include "core/sphere/relaxation.h"
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 
 namespace orbis::sphere {
 namespace {
 
-constexpr std::size_t vertex_grain = 512;
+using mesh::Index;
+
+constexpr std::size_t border_grain = 256;
 constexpr std::size_t triangle_grain = 4096;
 constexpr std::uint8_t uncolored = 255;
 
+// Moves vertices of one level; a thread's own.
+class Mover {
+public:
+  Mover(const Level& level, double worthwhile, std::span<Vec3d> points, Active& active)
+      : level_(level), worthwhile_(worthwhile), points_(points), active_(active) {}
+
+  // Returns whether v was active.
+  bool visit(Index v) {
+    if (active_[v] == 0) return false;
+    active_[v] = 0;
+    gather_star(v, level_.stars, level_.references, points_, star_);
+    double gain = 0;
+    points_[v] = newton_step(star_, points_[v], gain);
+    if (gain <= worthwhile_) return true;
+    wake(v);
+    for (const StarCorner& c : level_.stars[v]) wake(c.next);
+    return true;
+  }
+
+private:
+  const Level& level_;
+  double worthwhile_;
+  std::span<Vec3d> points_;
+  Active& active_;
+  std::vector<StarTerm> star_;
+
+  // Two vertices of one class may wake the same neighbour, always with the same value.
+  void wake(Index v) { std::atomic_ref(active_[v]).store(1, std::memory_order_relaxed); }
+};
+
 } // namespace
 
-// Greedy, in the order of the vertices: few classes (7 or 8 on usual meshes), and always the same ones.
-void Coloring::build(std::span<const mesh::Index> live, const StarTable& stars) {
-  std::vector<std::uint32_t> count;
-  for (const mesh::Index v : live) {
-    if (color_.size() <= v) color_.resize(std::size_t{v} + 1);
-    color_[v] = uncolored;
+void SweepOrder::build(const StarTable& stars, mesh::ThreadPool& pool) {
+  const std::size_t n = stars.vertices();
+  at_border_.resize(n);
+  pool.for_blocks(n, block_size, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      at_border_[v] = std::ranges::any_of(stars[static_cast<Index>(v)],
+                                          [&](const StarCorner& c) { return c.next < begin || c.next >= end; })
+                          ? 1
+                          : 0;
+    }
+  });
+  std::vector<Index> border;
+  for (std::size_t v = 0; v < n; ++v) {
+    if (at_border_[v] != 0) border.push_back(static_cast<Index>(v));
   }
-  for (const mesh::Index v : live) {
+  color(stars, border);
+}
+
+// Greedy, in the order of the vertices: few classes, and always the same ones.
+void SweepOrder::color(const StarTable& stars, std::span<const Index> border) {
+  std::vector<std::uint32_t> count;
+  color_.assign(stars.vertices(), uncolored);
+  for (const Index v : border) {
     std::uint64_t used = 0;
     for (const StarCorner& c : stars[v]) {
       if (color_[c.next] < 64) used |= std::uint64_t{1} << color_[c.next];
@@ -28,38 +76,30 @@ void Coloring::build(std::span<const mesh::Index> live, const StarTable& stars) 
     if (count.size() <= color_[v]) count.resize(std::size_t{color_[v]} + 1);
     ++count[color_[v]];
   }
-  first.assign(1, 0);
-  for (const std::uint32_t n : count) first.push_back(first.back() + n);
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  vertices.resize(live.size());
-  for (const mesh::Index v : live) vertices[next[color_[v]]++] = v;
+  first_.assign(1, 0);
+  for (const std::uint32_t n : count) first_.push_back(first_.back() + n);
+  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+  border_.resize(border.size());
+  for (const Index v : border) border_[next[color_[v]]++] = v;
 }
 
 std::size_t relax_active(const Level& level, double worthwhile, std::span<Vec3d> points, Active& active,
                          mesh::ThreadPool& pool) {
   std::atomic<std::size_t> moves = 0;
-  // Neighbours of one class may wake the same vertex, always with the same value.
-  const auto wake = [&](mesh::Index v) { std::atomic_ref(active[v]).store(1, std::memory_order_relaxed); };
-  for (std::size_t color = 0; color + 1 < level.coloring.first.size(); ++color) {
-    const std::span<const mesh::Index> members =
-        std::span(level.coloring.vertices)
-            .subspan(level.coloring.first[color], level.coloring.first[color + 1] - level.coloring.first[color]);
-    pool.for_blocks(members.size(), vertex_grain, [&](std::size_t begin, std::size_t end) {
-      std::vector<StarTerm> star;
-      star.reserve(16);
+  pool.for_blocks(points.size(), SweepOrder::block_size, [&](std::size_t begin, std::size_t end) {
+    Mover mover(level, worthwhile, points, active);
+    std::size_t moved = 0;
+    for (std::size_t v = begin; v < end; ++v) {
+      if (!level.order.is_at_border(static_cast<Index>(v)) && mover.visit(static_cast<Index>(v))) ++moved;
+    }
+    moves.fetch_add(moved, std::memory_order_relaxed);
+  });
+  for (std::size_t c = 0; c < level.order.classes(); ++c) {
+    const std::span<const Index> members = level.order.members(c);
+    pool.for_blocks(members.size(), border_grain, [&](std::size_t begin, std::size_t end) {
+      Mover mover(level, worthwhile, points, active);
       std::size_t moved = 0;
-      for (std::size_t i = begin; i < end; ++i) {
-        const mesh::Index v = members[i];
-        if (active[v] == 0) continue;
-        gather_star(v, level.stars, level.references, points, star);
-        double gain = 0;
-        points[v] = newton_step(star, points[v], gain);
-        ++moved;
-        active[v] = 0;
-        if (gain <= worthwhile) continue;
-        wake(v);
-        for (const StarCorner& c : level.stars[v]) wake(c.next);
-      }
+      for (const Index v : members.subspan(begin, end - begin)) moved += mover.visit(v) ? 1 : 0;
       moves.fetch_add(moved, std::memory_order_relaxed);
     });
   }

@@ -1,4 +1,4 @@
-// Sweeps of local Newton steps over the live vertices of one level of detail.
+// Sweeps of local Newton steps over the vertices of one level of detail.
 #pragma once
 
 #include <cstdint>
@@ -12,30 +12,43 @@
 
 namespace orbis::sphere {
 
-// Vertices in classes without neighbours among themselves: a class can be moved at once, in any order, with any number
-// of threads, and gives the same bits.
-struct Coloring {
-  std::vector<mesh::Index> vertices; // class by class
-  std::vector<std::uint32_t> first;  // class -> its first entry in vertices; one past the end too
-  void build(std::span<const mesh::Index> live, const StarTable& stars);
+// In which order a sweep visits the vertices, so that no thread reads what another writes and the result is the same
+// bits with any number of threads. Consecutive vertices form blocks. First all blocks are swept side by side, each in
+// the order of its vertices: those whose neighbours all lie in the block. What is left lies at the blocks' borders, and
+// is divided into classes without neighbours among themselves, which are moved one after the other.
+class SweepOrder {
+public:
+  static constexpr std::size_t block_size = 2048;
+
+  void build(const StarTable& stars, mesh::ThreadPool& pool);
+
+  [[nodiscard]] bool is_at_border(mesh::Index v) const { return at_border_[v] != 0; }
+  [[nodiscard]] std::size_t classes() const { return first_.size() - 1; }
+  [[nodiscard]] std::span<const mesh::Index> members(std::size_t c) const {
+    return std::span(border_).subspan(first_[c], first_[c + 1] - first_[c]);
+  }
 
 private:
-  std::vector<std::uint8_t> color_; // by vertex
+  void color(const StarTable& stars, std::span<const mesh::Index> border);
+
+  std::vector<std::uint8_t> at_border_; // by vertex
+  std::vector<mesh::Index> border_;     // class by class
+  std::vector<std::uint32_t> first_;    // class -> its first entry in border_; one past the end too
+  std::vector<std::uint8_t> color_;     // by vertex
 };
 
 // One level of detail: what the relaxation moves and what it measures against.
 struct Level {
-  std::span<const mesh::Index> vertices; // live
   const StarTable& stars;
-  std::span<const Reference> references; // by slot
-  const Coloring& coloring;
+  std::span<const Reference> references; // by triangle
+  const SweepOrder& order;
 };
 
 // Which vertices are worth another step.
 using Active = std::vector<std::uint8_t>;
 
-// One sweep: moves every active vertex once, class after class. A vertex that gains more than `worthwhile` of its
-// star's energy stays active and wakes its neighbours; the others fall asleep. Returns the number of moves.
+// One sweep: moves every active vertex once. A vertex that gains more than `worthwhile` of its star's energy stays
+// active and wakes its neighbours; the others fall asleep. Returns the number of moves.
 std::size_t relax_active(const Level& level, double worthwhile, std::span<Vec3d> points, Active& active,
                          mesh::ThreadPool& pool);
 

@@ -32,9 +32,8 @@ class Unfolder {
 public:
   Unfolder(std::span<const mesh::Triangle> triangles, std::vector<GridPoint>& points)
       : triangles_(triangles), points_(points), offsets_(offsets_by_distance()) {
-    std::vector<std::uint32_t> all(triangles.size());
-    std::iota(all.begin(), all.end(), 0U);
-    stars_.build(triangles, all, points.size());
+    mesh::ThreadPool alone(1);
+    stars_.build(triangles, points.size(), alone);
   }
 
   // Moves one vertex of the triangle so that fewer triangles of its star are folded. Returns whether it could.
@@ -44,8 +43,12 @@ public:
 
 private:
   [[nodiscard]] std::size_t folds(mesh::Index v, const GridPoint& at) const {
-    return static_cast<std::size_t>(std::ranges::count_if(
-        stars_[v], [&](const StarCorner& c) { return orientation(at, points_[c.next], points_[c.previous]) != 1; }));
+    const std::span<const StarCorner> star = stars_[v];
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < star.size(); ++k) {
+      if (orientation(at, points_[star[k].next], points_[previous_in(star, k)]) != 1) ++count;
+    }
+    return count;
   }
 
   bool move(mesh::Index v) {

@@ -110,10 +110,6 @@ void add_block(const TrianglePart& part, std::size_t i, const Turn& ti, std::siz
   for (std::size_t e = 0; e < 4; ++e) block[e] += static_cast<float>(sum[e]);
 }
 
-std::size_t corner_to(std::span<const StarCorner> star, mesh::Index neighbour) {
-  return static_cast<std::size_t>(std::ranges::find(star, neighbour, &StarCorner::next) - star.begin());
-}
-
 } // namespace
 
 void TangentHessian::build_row(mesh::Index v, std::span<const Reference> references, std::span<const Vec3d> points) {
@@ -124,18 +120,17 @@ void TangentHessian::build_row(mesh::Index v, std::span<const Reference> referen
   std::ranges::fill(row, Block{});
   for (std::size_t k = 0; k < star.size(); ++k) {
     const StarCorner& c = star[k];
-    const Reference& reference = references[c.slot()];
-    const std::size_t at = c.corner % 3;
+    const Reference& reference = references[c.triangle()];
+    const std::size_t at = c.place(), next = k + 1 == star.size() ? 0 : k + 1;
+    const mesh::Index previous = star[next].next;
     const TrianglePart part =
-        part_of({points[v], points[c.next], points[c.previous]},
+        part_of({points[v], points[c.next], points[previous]},
                 {double{reference.cot[at]}, double{reference.cot[(at + 1) % 3]}, double{reference.cot[(at + 2) % 3]}},
                 double{reference.area});
     const Turn here = turn_to(part.plane, frame);
     add_block(part, 0, here, 0, here, own_[v]);
     add_block(part, 0, here, 1, turn_to(part.plane, TangentFrame(points[c.next])), row[k]);
-    // The edge to `previous` belongs to the corner whose `next` that is.
-    add_block(part, 0, here, 2, turn_to(part.plane, TangentFrame(points[c.previous])),
-              row[corner_to(star, c.previous)]);
+    add_block(part, 0, here, 2, turn_to(part.plane, TangentFrame(points[previous])), row[next]);
   }
 }
 

@@ -1,7 +1,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <random>
 
@@ -21,11 +20,8 @@ struct Scene {
     NoProgress progress;
     hierarchy = sphere::build_hierarchy(mesh, pool, progress);
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) points.push_back(normalized(Vec3d(mesh.positions[v])));
-    std::vector<std::uint32_t> all(mesh.triangles.size());
-    std::iota(all.begin(), all.end(), 0U);
-    stars.build(mesh.triangles, all, points.size());
-    references.resize(mesh.triangles.size());
-    sphere::compute_references(mesh::unit_positions(mesh), mesh.triangles, all, 1e-6, pool, references);
+    stars.build(mesh.triangles, points.size(), pool);
+    sphere::compute_references(mesh::unit_positions(mesh), mesh.triangles, 1e-6, pool, references);
     basis.emplace(hierarchy, pool);
     std::vector<sphere::StarTerm> star;
     for (mesh::Index v = 0; v < points.size(); ++v) {
