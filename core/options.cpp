@@ -9,10 +9,14 @@
 namespace orbis {
 namespace {
 
-constexpr std::array<OptionInfo, 9> table{{
-    {"objective", "isometric | shape-preserving", "isometric",
-     "what the map keeps: lengths as far as possible, or the paper's shape-preserving weights"},
-    {"quality", "draft | standard | high", "standard", "isometric only: time against closeness to the least energy"},
+constexpr std::array<OptionInfo, 10> table{{
+    {"objective", "isometric | conformal | stretch | shape-preserving", "isometric",
+     "what the map keeps: lengths as far as possible, angles, texture resolution, or the paper's shape-preserving "
+     "weights"},
+    {"area_weight", "a number from 0 to 1", "1",
+     "isometric only: 1 weighs areas as much as angles, less favours angles, 0 is conformal"},
+    {"quality", "draft | standard | high", "standard",
+     "all but shape-preserving: time against closeness to the least energy"},
     {"threshold", "a number in (0, 1)", "0.995",
      "shape-preserving only: relaxation stops when the best local improvement is above this"},
     {"texture", "auto | pattern | cubemap | base_color", "auto",
@@ -55,7 +59,7 @@ E choice(std::string_view name, std::string_view text, const std::array<std::str
   refuse(name, text);
 }
 
-constexpr std::array<std::string_view, 2> objectives{"isometric", "shape-preserving"};
+constexpr std::array<std::string_view, 4> objectives{"isometric", "conformal", "stretch", "shape-preserving"};
 constexpr std::array<std::string_view, 3> qualities{"draft", "standard", "high"};
 constexpr std::array<std::string_view, 4> sources{"auto", "pattern", "cubemap", "base_color"};
 constexpr std::array<std::string_view, 2> formats{"png", "jpeg"};
@@ -79,6 +83,8 @@ std::span<const OptionInfo> option_table() { return table; }
 void set_option(Options& options, std::string_view name, std::string_view value) {
   if (name == "objective") {
     options.objective = choice<Objective>(name, value, objectives);
+  } else if (name == "area_weight") {
+    options.area_weight = number<double>(name, value, 0.0, 1.0);
   } else if (name == "quality") {
     options.quality = choice<Quality>(name, value, qualities);
   } else if (name == "threshold") {
@@ -104,6 +110,7 @@ void set_option(Options& options, std::string_view name, std::string_view value)
 
 std::string get_option(const Options& options, std::string_view name) {
   if (name == "objective") return text_of(options.objective, objectives);
+  if (name == "area_weight") return text_of(options.area_weight);
   if (name == "quality") return text_of(options.quality, qualities);
   if (name == "threshold") return text_of(options.threshold);
   if (name == "texture") return text_of(options.texture, sources);

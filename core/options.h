@@ -9,7 +9,7 @@
 
 namespace orbis {
 
-enum class Objective { isometric, shape_preserving };
+enum class Objective { isometric, conformal, stretch, shape_preserving };
 enum class Quality { draft, standard, high };
 enum class TextureSource { automatic, pattern, cubemap, base_color };
 enum class TextureFormat { png, jpeg };
@@ -17,7 +17,9 @@ enum class Compression { none, draco };
 
 struct Options {
   Objective objective = Objective::isometric;
-  // isometric only: how close to the least energy the map is brought.
+  // isometric only: 1 weighs areas as much as angles, 0 is conformal; in [0, 1].
+  double area_weight = 1;
+  // All but shape-preserving: how close to the least energy the map is brought.
   Quality quality = Quality::standard;
   // shape-preserving only: relaxation stops when the best local improvement ds(p*)/ds(p) is above this (paper: 0.995).
   double threshold = 0.995;

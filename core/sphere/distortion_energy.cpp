@@ -56,9 +56,10 @@ double step_to_fold(std::span<const StarTerm> star, const Vec3d& p, const Vec3d&
 
 } // namespace
 
-Vec3d newton_step(std::span<const StarTerm> star, const Vec3d& p, double& gain) {
+template <class Energy>
+Vec3d newton_step(const Energy& energy, std::span<const StarTerm> star, const Vec3d& p, double& gain) {
   const TangentFrame frame(p);
-  const Expansion e = expand(star, p, frame);
+  const Expansion e = expand(energy, star, p, frame);
   const Step step = descent_step(e);
   gain = 0;
   const Vec3d s = step.x * frame.x + step.y * frame.y;
@@ -66,13 +67,17 @@ Vec3d newton_step(std::span<const StarTerm> star, const Vec3d& p, double& gain) 
   if (!(t > 0)) return p;
   for (int i = 0; i < most_halvings; ++i, t *= 0.5) {
     const Vec3d q = normalized(p + t * s);
-    const double energy = star_energy(star, q);
-    if (energy < e.energy) {
-      gain = (e.energy - energy) / e.energy;
+    const double now = star_energy(energy, star, q);
+    if (now < e.energy) {
+      gain = (e.energy - now) / e.energy;
       return q;
     }
   }
   return p;
 }
+
+template Vec3d newton_step(const SymmetricDirichlet&, std::span<const StarTerm>, const Vec3d&, double&);
+template Vec3d newton_step(const Stretch&, std::span<const StarTerm>, const Vec3d&, double&);
+template Vec3d newton_step(const AreaWeighted&, std::span<const StarTerm>, const Vec3d&, double&);
 
 } // namespace orbis::sphere

@@ -1,11 +1,9 @@
-// The symmetric Dirichlet energy of a piecewise map onto the sphere, written with the determinant instead of the
-// chordal area (docs/parametrization.md, "The energy"). For a triangle (p, a, b) with reference area A and reference
-// angles,
+// The energy of a piecewise map onto the sphere, written with the determinant instead of the chordal area
+// (docs/parametrization.md, "The energy"). For a triangle (p, a, b) with reference area A and reference angles,
 //
-//   D = 1/2 sum cot(opposite angle) |edge|^2    Dirichlet energy of the linear map (Pinkall and Polthier 1993)
-//   V = det(p, a, b)                            twice the image's area to first order, 0 exactly at a fold
-//   E = D (1/4 + A^2 / V^2)                     = A (s1^2 + s2^2 + 1/s1^2 + 1/s2^2) / 4 to first order; A where
-//   isometric
+//   D = 1/2 sum cot(opposite angle) |edge|^2    twice the Dirichlet energy of the linear map (Pinkall and Polthier
+//   1993) V = det(p, a, b)                            twice the image's area to first order, 0 exactly at a fold E = D
+//   h(V)                                  with h of the family in triangle_energy.h; A where isometric
 //
 // E is a barrier: it grows without bound exactly when the triangle stops being positively oriented as seen from the
 // centre.
@@ -25,6 +23,7 @@
 #include "core/sphere/reference.h"
 #include "core/sphere/sphere_math.h"
 #include "core/sphere/star_table.h"
+#include "core/sphere/triangle_energy.h"
 
 namespace orbis::sphere {
 
@@ -33,17 +32,16 @@ struct StarTerm {
   Vec3d a, b;
   double cot_a, cot_b; // at a (opposite the edge p b) and at b (opposite p a)
   double fixed;        // 1/2 cot_p |a - b|^2, which does not depend on p
-  double area_squared; // A^2
+  double area;         // A
 };
 
 inline StarTerm make_term(const Vec3d& a, const Vec3d& b, const Reference& reference, std::size_t corner) {
-  const double area{reference.area};
   return {a,
           b,
           double{reference.cot[(corner + 1) % 3]},
           double{reference.cot[(corner + 2) % 3]},
           0.5 * double{reference.cot[corner]} * squared_norm(a - b),
-          area * area};
+          double{reference.area}};
 }
 
 // The terms of the star of v; `star` is overwritten.
@@ -59,15 +57,15 @@ inline void gather_star(mesh::Index v, const StarTable& stars, std::span<const R
   }
 }
 
-// E of the star of p; infinite where a triangle is not positively oriented. p: unit length.
-inline double star_energy(std::span<const StarTerm> star, const Vec3d& p) {
+// E of the star of p; infinite where a triangle is not positively oriented. p: unit length. Energy: of the family.
+template <class Energy> double star_energy(const Energy& energy, std::span<const StarTerm> star, const Vec3d& p) {
   double sum = 0;
   for (const StarTerm& t : star) {
     const Vec3d u = t.a - p, v = t.b - p;
     const double V = dot(p, cross(u, v));
     if (!(V > 0)) return std::numeric_limits<double>::infinity();
     const double D = 0.5 * (t.cot_b * squared_norm(u) + t.cot_a * squared_norm(v)) + t.fixed;
-    sum += D * (0.25 + t.area_squared / (V * V));
+    sum += D * energy.value(V, t.area);
   }
   return sum;
 }
@@ -89,7 +87,8 @@ struct Expansion {
   double hxx = 0, hxy = 0, hyy = 0; // Hessian
 };
 
-inline Expansion expand(std::span<const StarTerm> star, const Vec3d& p, const TangentFrame& frame) {
+template <class Energy>
+Expansion expand(const Energy& energy, std::span<const StarTerm> star, const Vec3d& p, const TangentFrame& frame) {
   Expansion out;
   for (const StarTerm& t : star) {
     const Vec3d u = t.a - p, v = t.b - p;
@@ -99,10 +98,7 @@ inline Expansion expand(std::span<const StarTerm> star, const Vec3d& p, const Ta
     const Vec3d dD = -(t.cot_b * u + t.cot_a * v);
     const Vec3d dV = cross(p, v - u) + uv; // a x b from differences, but for a part along p
     const double Dx = dot(dD, frame.x), Dy = dot(dD, frame.y), Vx = dot(dV, frame.x), Vy = dot(dV, frame.y);
-    const double inverse = 1 / V, ratio = t.area_squared * inverse * inverse;
-    const double h = 0.25 + ratio;          // E = D h(V)
-    const double h1 = -2 * ratio * inverse; // h'
-    const double h2 = 3 * -h1 * inverse;    // h''
+    const auto [h, h1, h2] = energy.jet(V, t.area);
     const double d_hessian = t.cot_b * dot(t.a, p) + t.cot_a * dot(t.b, p);
     const double diagonal = h * d_hessian - D * h1 * V;
     out.energy += D * h;
@@ -118,6 +114,7 @@ inline Expansion expand(std::span<const StarTerm> star, const Vec3d& p, const Ta
 // A Newton step from p that lowers the star's energy: the Hessian's eigenvalues are made positive, the step is cut
 // short of the nearest fold and halved until E falls. Returns p itself where no step does. `gain` becomes the fraction
 // of E that was gained.
-[[nodiscard]] Vec3d newton_step(std::span<const StarTerm> star, const Vec3d& p, double& gain);
+template <class Energy>
+[[nodiscard]] Vec3d newton_step(const Energy& energy, std::span<const StarTerm> star, const Vec3d& p, double& gain);
 
 } // namespace orbis::sphere

@@ -7,6 +7,7 @@
 #include "core/mesh/triangle_mesh.h"
 #include "core/options.h"
 #include "core/progress.h"
+#include "core/sphere/triangle_energy.h"
 
 namespace orbis::sphere {
 
@@ -25,11 +26,21 @@ struct Embedding {
 // place.
 [[nodiscard]] Embedding embed_shape_preserving(const mesh::TriangleMesh& mesh, double threshold, Progress& progress);
 
-// The default: symmetric Dirichlet energy on a hierarchy of independent vertex removals: see isometric.cpp.
+// Least energy of a family (triangle_energy.h) on a hierarchy of independent vertex removals: see isometric.cpp.
 // Same requirements. quality: how many Newton steps of the whole map follow the hierarchy. The result does not depend
 // on `threads` (0: as many as the machine has).
-[[nodiscard]] Embedding embed_isometric(const mesh::TriangleMesh& mesh, Quality quality, std::uint32_t threads,
-                                        Progress& progress);
+[[nodiscard]] Embedding embed_by_energy(const mesh::TriangleMesh& mesh, const TriangleEnergy& energy, Quality quality,
+                                        std::uint32_t threads, Progress& progress);
+
+// The default: symmetric Dirichlet energy.
+[[nodiscard]] inline Embedding embed_isometric(const mesh::TriangleMesh& mesh, Quality quality, std::uint32_t threads,
+                                               Progress& progress) {
+  return embed_by_energy(mesh, SymmetricDirichlet{}, quality, threads, progress);
+}
+
+// What the options ask for: objective, area_weight, quality, threshold.
+[[nodiscard]] Embedding embed(const mesh::TriangleMesh& mesh, const Options& options, std::uint32_t threads,
+                              Progress& progress);
 
 // The paper's "Minimum", Eq. 3: sum over vertices of sum_j w_ij theta_ij^2, with Floater's (1997) weights of the mesh.
 [[nodiscard]] double shape_preserving_energy(const mesh::TriangleMesh& mesh, const std::vector<Vec3d>& points);

@@ -42,7 +42,7 @@ GlobalStep::GlobalStep(const FinestLevel& level, HierarchicalBasis& basis, mesh:
     : level_(level), basis_(basis), pool_(pool) {}
 
 double GlobalStep::energy(std::span<const Vec3d> points) {
-  return total_energy(level_.triangles, level_.references, points, pool_);
+  return total_energy(level_.energy, level_.triangles, level_.references, points, pool_);
 }
 
 // Conjugate gradients for H step = -gradient; residual_ holds the right-hand side at first.
@@ -70,8 +70,8 @@ StepOutcome GlobalStep::take(std::uint32_t most_iterations, std::span<Vec3d> poi
   const std::size_t n = points.size();
   for (auto* vector : {&residual_, &step_, &direction_, &image_, &preconditioned_}) vector->resize(n);
   trial_.resize(n);
-  hessian_.build(level_.stars, level_.references, points, pool_);
-  tangent_gradient(level_.stars, level_.references, points, residual_, pool_);
+  hessian_.build(level_.energy, level_.stars, level_.references, points, pool_);
+  tangent_gradient(level_.energy, level_.stars, level_.references, points, residual_, pool_);
   for (Tangent& r : residual_) r = {-r.x, -r.y};
   basis_.prepare(points);
   solve(most_iterations);

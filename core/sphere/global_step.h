@@ -15,6 +15,7 @@ namespace orbis::sphere {
 
 // The finest level: every vertex and every triangle is live.
 struct FinestLevel {
+  const TriangleEnergy& energy;
   std::span<const mesh::Triangle> triangles;
   const StarTable& stars;
   std::span<const Reference> references;

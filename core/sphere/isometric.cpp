@@ -1,4 +1,4 @@
-// The default objective: the symmetric Dirichlet energy of distortion_energy.h, minimised on a hierarchy (method in
+// An energy of triangle_energy.h (by default the symmetric Dirichlet energy), minimised on a hierarchy (method in
 // docs/parametrization.md).
 //
 // The mesh is taken apart in rounds of independent vertex removals. From the tetrahedron on, each round's vertices are
@@ -24,6 +24,7 @@
 #include "core/sphere/hierarchy.h"
 #include "core/sphere/insertion.h"
 #include "core/sphere/level_mesh.h"
+#include "core/sphere/moebius_centring.h"
 #include "core/sphere/relaxation.h"
 
 namespace orbis::sphere {
@@ -69,7 +70,8 @@ constexpr Effort effort_of(Quality quality) {
 
 class Refinement {
 public:
-  Refinement(Hierarchy hierarchy, std::vector<Vec3d> positions, const Effort& effort, mesh::ThreadPool& pool);
+  Refinement(const TriangleEnergy& energy, Hierarchy hierarchy, std::vector<Vec3d> positions, const Effort& effort,
+             mesh::ThreadPool& pool);
   void refine(Progress& progress);
   void optimise(Progress& progress);
   [[nodiscard]] std::vector<Vec3d> points() && { return std::move(points_); }
@@ -83,7 +85,9 @@ private:
   void keep_stiffness(std::size_t round);
   // Sweeps over what is active, all at first. Returns whether no step is worthwhile any more.
   bool relax(std::uint32_t sweeps, double worthwhile, std::span<Vec3d> points, Progress& progress);
+  void centre(std::span<Vec3d> points);
 
+  TriangleEnergy energy_;
   Hierarchy hierarchy_;
   std::vector<Vec3d> positions_; // of the surface
   Effort effort_;
@@ -96,8 +100,9 @@ private:
   HierarchicalBasis basis_;
 };
 
-Refinement::Refinement(Hierarchy hierarchy, std::vector<Vec3d> positions, const Effort& effort, mesh::ThreadPool& pool)
-    : hierarchy_(std::move(hierarchy)), positions_(std::move(positions)), effort_(effort), pool_(pool),
+Refinement::Refinement(const TriangleEnergy& energy, Hierarchy hierarchy, std::vector<Vec3d> positions,
+                       const Effort& effort, mesh::ThreadPool& pool)
+    : energy_(energy), hierarchy_(std::move(hierarchy)), positions_(std::move(positions)), effort_(effort), pool_(pool),
       points_(positions_.size()), level_(hierarchy_), basis_(hierarchy_, pool) {
   const mesh::Triangle& t = hierarchy_.triangles[hierarchy_.tetrahedron_slots[0]];
   Index apex = 0;
@@ -142,11 +147,18 @@ bool Refinement::relax(std::uint32_t sweeps, double worthwhile, std::span<Vec3d>
   for (std::uint32_t i = 0; i < sweeps; ++i) {
     progress.check();
     const std::size_t moves =
-        relax_active({level_.stars(), level_.references(), order_}, worthwhile, points, active_, pool_);
+        relax_active({level_.stars(), level_.references(), order_}, energy_, worthwhile, points, active_, pool_);
     relaxations += moves;
     if (moves == 0) return true;
   }
   return false;
+}
+
+// Conformal maps alone are free to: the other energies say themselves where room is needed.
+void Refinement::centre(std::span<Vec3d> points) {
+  const auto* family = std::get_if<AreaWeighted>(&energy_);
+  if (family == nullptr || family->theta > 0) return;
+  centre_by_moebius(level_.triangles(), level_.references(), points, pool_);
 }
 
 void Refinement::relax_level(std::uint32_t sweeps, double worthwhile, Progress& progress) {
@@ -156,6 +168,7 @@ void Refinement::relax_level(std::uint32_t sweeps, double worthwhile, Progress& 
     for (std::size_t i = begin; i < end; ++i) level_points_[i] = points_[vertices[i]];
   });
   relax(sweeps, worthwhile, level_points_, progress);
+  centre(level_points_);
   pool_.for_blocks(vertices.size(), copy_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) points_[vertices[i]] = level_points_[i];
   });
@@ -178,17 +191,21 @@ void Refinement::refine(Progress& progress) {
 // Of the tetrahedron with the first round, later of the round's vertices: at the level that they were inserted at.
 void Refinement::keep_stiffness(std::size_t round) {
   const std::uint32_t begin = hierarchy_.round_first[round], end = hierarchy_.round_first[round + 1];
-  const auto keep = [&](std::span<const Index> vertices) {
+  const auto keep = [&](std::span<const Index> vertices, const auto& energy) {
     pool_.for_blocks(vertices.size(), insertion_grain, [&](std::size_t from, std::size_t to) {
       std::vector<StarTerm> star;
       for (const Index v : vertices.subspan(from, to - from)) {
         gather_star(level_.number_of(v), level_.stars(), level_.references(), level_points_, star);
-        basis_.keep_stiffness(v, expand(star, points_[v], TangentFrame(points_[v])), points_[v]);
+        basis_.keep_stiffness(v, expand(energy, star, points_[v], TangentFrame(points_[v])), points_[v]);
       }
     });
   };
-  keep(std::span(hierarchy_.removed).subspan(begin, end - begin));
-  if (round + 1 == hierarchy_.rounds()) keep(hierarchy_.tetrahedron);
+  std::visit(
+      [&](const auto& energy) {
+        keep(std::span(hierarchy_.removed).subspan(begin, end - begin), energy);
+        if (round + 1 == hierarchy_.rounds()) keep(hierarchy_.tetrahedron, energy);
+      },
+      energy_);
 }
 
 void Refinement::optimise(Progress& progress) {
@@ -200,17 +217,19 @@ void Refinement::optimise(Progress& progress) {
   }
   // From here on the level is the whole mesh: its numbers are the hierarchy's.
   converged = relax(final_sweeps, final_gain, points_, progress);
-  GlobalStep global({level_.triangles(), level_.stars(), level_.references()}, basis_, pool_);
+  GlobalStep global({energy_, level_.triangles(), level_.stars(), level_.references()}, basis_, pool_);
   for (int i = 0; i < effort_.steps && hierarchy_.rounds() > 0; ++i) {
     progress.report(Stage::optimise, static_cast<std::uint64_t>(i) + 1, total);
     progress.check();
     const StepOutcome step = global.take(effort_.iterations, points_);
+    centre(points_);
     const bool settled = relax(final_sweeps, final_gain, points_, progress);
     // A step that a fold cut short gains little because of one place, which the relaxation has just mended.
     const bool enough = step.gain < effort_.enough && (step.length == 0 || step.length == 1);
     converged = settled && enough;
     if (enough) break;
   }
+  centre(points_);
   progress.report(Stage::optimise, total, total);
 }
 
@@ -229,7 +248,8 @@ mesh::TriangleMesh reordered(const mesh::TriangleMesh& mesh, std::span<const Ind
 
 } // namespace
 
-Embedding embed_isometric(const mesh::TriangleMesh& mesh, Quality quality, std::uint32_t threads, Progress& progress) {
+Embedding embed_by_energy(const mesh::TriangleMesh& mesh, const TriangleEnergy& energy, Quality quality,
+                          std::uint32_t threads, Progress& progress) {
   mesh::ThreadPool pool(threads);
   Embedding out;
   auto start = std::chrono::steady_clock::now();
@@ -238,7 +258,7 @@ Embedding embed_isometric(const mesh::TriangleMesh& mesh, Quality quality, std::
   Hierarchy hierarchy = build_hierarchy(ordered, pool, progress);
   out.t1_ms = milliseconds_since(start);
   start = std::chrono::steady_clock::now();
-  Refinement refinement(std::move(hierarchy), mesh::unit_positions(ordered), effort_of(quality), pool);
+  Refinement refinement(energy, std::move(hierarchy), mesh::unit_positions(ordered), effort_of(quality), pool);
   refinement.refine(progress);
   out.t2_ms = milliseconds_since(start);
   start = std::chrono::steady_clock::now();

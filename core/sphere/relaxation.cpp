@@ -14,10 +14,10 @@ constexpr std::size_t triangle_grain = 4096;
 constexpr std::uint8_t uncolored = 255;
 
 // Moves vertices of one level; a thread's own.
-class Mover {
+template <class Energy> class Mover {
 public:
-  Mover(const Level& level, double worthwhile, std::span<Vec3d> points, Active& active)
-      : level_(level), worthwhile_(worthwhile), points_(points), active_(active) {}
+  Mover(const Level& level, const Energy& energy, double worthwhile, std::span<Vec3d> points, Active& active)
+      : level_(level), energy_(energy), worthwhile_(worthwhile), points_(points), active_(active) {}
 
   // Returns whether v was active.
   bool visit(Index v) {
@@ -25,7 +25,7 @@ public:
     active_[v] = 0;
     gather_star(v, level_.stars, level_.references, points_, star_);
     double gain = 0;
-    points_[v] = newton_step(star_, points_[v], gain);
+    points_[v] = newton_step(energy_, star_, points_[v], gain);
     if (gain <= worthwhile_) return true;
     wake(v);
     for (const StarCorner& c : level_.stars[v]) wake(c.next);
@@ -34,6 +34,7 @@ public:
 
 private:
   const Level& level_;
+  const Energy& energy_;
   double worthwhile_;
   std::span<Vec3d> points_;
   Active& active_;
@@ -83,11 +84,14 @@ void SweepOrder::color(const StarTable& stars, std::span<const Index> border) {
   for (const Index v : border) border_[next[color_[v]]++] = v;
 }
 
-std::size_t relax_active(const Level& level, double worthwhile, std::span<Vec3d> points, Active& active,
-                         mesh::ThreadPool& pool) {
+namespace {
+
+template <class Energy>
+std::size_t sweep(const Level& level, const Energy& energy, double worthwhile, std::span<Vec3d> points, Active& active,
+                  mesh::ThreadPool& pool) {
   std::atomic<std::size_t> moves = 0;
   pool.for_blocks(points.size(), SweepOrder::block_size, [&](std::size_t begin, std::size_t end) {
-    Mover mover(level, worthwhile, points, active);
+    Mover mover(level, energy, worthwhile, points, active);
     std::size_t moved = 0;
     for (std::size_t v = begin; v < end; ++v) {
       if (!level.order.is_at_border(static_cast<Index>(v)) && mover.visit(static_cast<Index>(v))) ++moved;
@@ -97,7 +101,7 @@ std::size_t relax_active(const Level& level, double worthwhile, std::span<Vec3d>
   for (std::size_t c = 0; c < level.order.classes(); ++c) {
     const std::span<const Index> members = level.order.members(c);
     pool.for_blocks(members.size(), border_grain, [&](std::size_t begin, std::size_t end) {
-      Mover mover(level, worthwhile, points, active);
+      Mover mover(level, energy, worthwhile, points, active);
       std::size_t moved = 0;
       for (const Index v : members.subspan(begin, end - begin)) moved += mover.visit(v) ? 1 : 0;
       moves.fetch_add(moved, std::memory_order_relaxed);
@@ -106,17 +110,28 @@ std::size_t relax_active(const Level& level, double worthwhile, std::span<Vec3d>
   return moves;
 }
 
-double total_energy(std::span<const mesh::Triangle> triangles, std::span<const Reference> references,
-                    std::span<const Vec3d> points, mesh::ThreadPool& pool) {
-  return pool.sum_blocks(triangles.size(), triangle_grain, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const mesh::Triangle& t = triangles[i];
-      const StarTerm term = make_term(points[t[1]], points[t[2]], references[i], 0);
-      sum += star_energy(std::span(&term, 1), points[t[0]]);
-    }
-    return sum;
-  });
+} // namespace
+
+std::size_t relax_active(const Level& level, const TriangleEnergy& energy, double worthwhile, std::span<Vec3d> points,
+                         Active& active, mesh::ThreadPool& pool) {
+  return std::visit([&](const auto& e) { return sweep(level, e, worthwhile, points, active, pool); }, energy);
+}
+
+double total_energy(const TriangleEnergy& energy, std::span<const mesh::Triangle> triangles,
+                    std::span<const Reference> references, std::span<const Vec3d> points, mesh::ThreadPool& pool) {
+  return std::visit(
+      [&](const auto& e) {
+        return pool.sum_blocks(triangles.size(), triangle_grain, [&](std::size_t begin, std::size_t end) {
+          double sum = 0;
+          for (std::size_t i = begin; i < end; ++i) {
+            const mesh::Triangle& t = triangles[i];
+            const StarTerm term = make_term(points[t[1]], points[t[2]], references[i], 0);
+            sum += star_energy(e, std::span(&term, 1), points[t[0]]);
+          }
+          return sum;
+        });
+      },
+      energy);
 }
 
 } // namespace orbis::sphere

@@ -49,11 +49,12 @@ using Active = std::vector<std::uint8_t>;
 
 // One sweep: moves every active vertex once. A vertex that gains more than `worthwhile` of its star's energy stays
 // active and wakes its neighbours; the others fall asleep. Returns the number of moves.
-std::size_t relax_active(const Level& level, double worthwhile, std::span<Vec3d> points, Active& active,
-                         mesh::ThreadPool& pool);
+std::size_t relax_active(const Level& level, const TriangleEnergy& energy, double worthwhile, std::span<Vec3d> points,
+                         Active& active, mesh::ThreadPool& pool);
 
 // The energy of the whole map: sum over all triangles of E, 4 pi where isometric, infinite where one is folded.
-[[nodiscard]] double total_energy(std::span<const mesh::Triangle> triangles, std::span<const Reference> references,
-                                  std::span<const Vec3d> points, mesh::ThreadPool& pool);
+[[nodiscard]] double total_energy(const TriangleEnergy& energy, std::span<const mesh::Triangle> triangles,
+                                  std::span<const Reference> references, std::span<const Vec3d> points,
+                                  mesh::ThreadPool& pool);
 
 } // namespace orbis::sphere

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/sphere/energy_modes.h"
+
 namespace orbis::sphere {
 namespace {
 
@@ -55,7 +57,9 @@ struct TrianglePart {
   Plane plane;
 };
 
-TrianglePart part_of(const std::array<Vec3d, 3>& q, const std::array<double, 3>& cot, double area) {
+template <class Energy>
+TrianglePart part_of(const Energy& energy, const std::array<Vec3d, 3>& q, const std::array<double, 3>& cot,
+                     double area) {
   TrianglePart out;
   out.plane = plane_of(q[0], q[1], q[2]);
   const HatGradients hat = hat_gradients(cot, area);
@@ -66,19 +70,16 @@ TrianglePart part_of(const std::array<Vec3d, 3>& q, const std::array<double, 3>&
   const double fyx = y2 * hat.x[2], fyy = y2 * hat.y[2];
   const Svd s = decompose(fxx, fxy, fyx, fyy);
   const double s1 = s.s1, s2 = std::max(s.s2, 1e-9 * s.s1);
-  const double i1 = 1 / s1, i2 = 1 / s2;
-  const double p = i1 * i2;
-  const std::array<double, 4> lambda{0.5 * (1 + 3 * i1 * i1 * i1 * i1), 0.5 * (1 + 3 * i2 * i2 * i2 * i2),
-                                     0.5 * (1 + (s1 * s1 + s1 * s2 + s2 * s2) * p * p * p),
-                                     std::max(0.0, 0.5 * (1 - (i1 * i1 * i1 + i2 * i2 * i2) / (s1 + s2)))};
+  const Modes modes = modes_of(energy, s1, s2);
   const double r = std::sqrt(0.5);
-  // Columns u1 = (cu, su), u2 = (-su, cu) of U; v1, v2 of V alike. Mode matrices: u1 v1^T, u2 v2^T, (u1 v2^T + u2 v1^T)
-  // r, (u2 v1^T - u1 v2^T) r.
+  // Columns u1 = (cu, su), u2 = (-su, cu) of U; v1, v2 of V alike. Mode matrices: c u1 v1^T + s u2 v2^T,
+  // c u2 v2^T - s u1 v1^T, (u1 v2^T + u2 v1^T) r, (u2 v1^T - u1 v2^T) r.
   for (std::size_t i = 0; i < 3; ++i) {
     const double g1 = hat.x[i] * s.cv + hat.y[i] * s.sv, g2 = -hat.x[i] * s.sv + hat.y[i] * s.cv; // hat in V's frame
-    const std::array<double, 4> a{g1, 0, r * g2, -r * g2}, b{0, g2, r * g1, r * g1};              // along u1 and u2
+    const std::array<double, 4> a{modes.c * g1, -modes.s * g1, r * g2, -r * g2},
+        b{modes.s * g2, modes.c * g2, r * g1, r * g1}; // along u1 and u2
     for (std::size_t k = 0; k < 4; ++k) {
-      const double scale = std::sqrt(lambda[k] * area);
+      const double scale = std::sqrt(modes.lambda[k] * area);
       out.wx[i][k] = scale * (a[k] * s.cu - b[k] * s.su);
       out.wy[i][k] = scale * (a[k] * s.su + b[k] * s.cu);
     }
@@ -112,7 +113,9 @@ void add_block(const TrianglePart& part, std::size_t i, const Turn& ti, std::siz
 
 } // namespace
 
-void TangentHessian::build_row(mesh::Index v, std::span<const Reference> references, std::span<const Vec3d> points) {
+template <class Energy>
+void TangentHessian::build_row(const Energy& energy, mesh::Index v, std::span<const Reference> references,
+                               std::span<const Vec3d> points) {
   const std::span<const StarCorner> star = (*stars_)[v];
   const std::span<Block> row = std::span(neighbour_).subspan(stars_->first(v), star.size());
   const TangentFrame frame(points[v]);
@@ -124,7 +127,7 @@ void TangentHessian::build_row(mesh::Index v, std::span<const Reference> referen
     const std::size_t at = c.place(), next = k + 1 == star.size() ? 0 : k + 1;
     const mesh::Index previous = star[next].next;
     const TrianglePart part =
-        part_of({points[v], points[c.next], points[previous]},
+        part_of(energy, {points[v], points[c.next], points[previous]},
                 {double{reference.cot[at]}, double{reference.cot[(at + 1) % 3]}, double{reference.cot[(at + 2) % 3]}},
                 double{reference.area});
     const Turn here = turn_to(part.plane, frame);
@@ -134,14 +137,18 @@ void TangentHessian::build_row(mesh::Index v, std::span<const Reference> referen
   }
 }
 
-void TangentHessian::build(const StarTable& stars, std::span<const Reference> references, std::span<const Vec3d> points,
-                           mesh::ThreadPool& pool) {
+void TangentHessian::build(const TriangleEnergy& energy, const StarTable& stars, std::span<const Reference> references,
+                           std::span<const Vec3d> points, mesh::ThreadPool& pool) {
   stars_ = &stars;
   own_.resize(points.size());
   neighbour_.resize(stars.corners());
-  pool.for_blocks(points.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) build_row(static_cast<mesh::Index>(v), references, points);
-  });
+  std::visit(
+      [&](const auto& e) {
+        pool.for_blocks(points.size(), grain, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t v = begin; v < end; ++v) build_row(e, static_cast<mesh::Index>(v), references, points);
+        });
+      },
+      energy);
 }
 
 void TangentHessian::apply(std::span<const Tangent> in, std::span<Tangent> out, mesh::ThreadPool& pool) const {
@@ -161,16 +168,20 @@ void TangentHessian::apply(std::span<const Tangent> in, std::span<Tangent> out, 
   });
 }
 
-void tangent_gradient(const StarTable& stars, std::span<const Reference> references, std::span<const Vec3d> points,
-                      std::span<Tangent> out, mesh::ThreadPool& pool) {
-  pool.for_blocks(points.size(), grain, [&](std::size_t begin, std::size_t end) {
-    std::vector<StarTerm> star;
-    for (std::size_t v = begin; v < end; ++v) {
-      gather_star(static_cast<mesh::Index>(v), stars, references, points, star);
-      const Expansion e = expand(star, points[v], TangentFrame(points[v]));
-      out[v] = {e.gx, e.gy};
-    }
-  });
+void tangent_gradient(const TriangleEnergy& energy, const StarTable& stars, std::span<const Reference> references,
+                      std::span<const Vec3d> points, std::span<Tangent> out, mesh::ThreadPool& pool) {
+  std::visit(
+      [&](const auto& member) {
+        pool.for_blocks(points.size(), grain, [&](std::size_t begin, std::size_t end) {
+          std::vector<StarTerm> star;
+          for (std::size_t v = begin; v < end; ++v) {
+            gather_star(static_cast<mesh::Index>(v), stars, references, points, star);
+            const Expansion e = expand(member, star, points[v], TangentFrame(points[v]));
+            out[v] = {e.gx, e.gy};
+          }
+        });
+      },
+      energy);
 }
 
 } // namespace orbis::sphere

@@ -14,28 +14,22 @@
 
 namespace orbis::sphere {
 
-// The energy of a triangle is a function of the singular values s1, s2 of its map F to the triangle's plane,
-// A/4 (s1^2 + s2^2 + 1/s1^2 + 1/s2^2). Its second derivative with respect to F has, in closed form, the eigenvectors of
-// two scalings, a flip and a twist (Smith, de Goes, Kim: Analytic eigensystems for isotropic distortion energies,
-// 2019):
-//
-//   scalings  1/2 (1 + 3 / s_k^4)      flip  1/2 (1 + (s1^2 + s1 s2 + s2^2) / (s1 s2)^3)      twist  1/2 (1 - (s1^-3 +
-//   s2^-3) / (s1 + s2))
-//
-// of which only the twist can be negative, and is then left out. The bend of the sphere under a triangle is neglected:
-// this changes the direction of a step by the size of the triangles, and the gradient is the exact one.
+// A triangle's block is that of energy_modes.h. The bend of the sphere under a triangle is neglected: this changes the
+// direction of a step by the size of the triangles, and the gradient is the exact one.
 class TangentHessian {
 public:
   // stars: of all vertices of the finest level, and the same until apply.
-  void build(const StarTable& stars, std::span<const Reference> references, std::span<const Vec3d> points,
-             mesh::ThreadPool& pool);
+  void build(const TriangleEnergy& energy, const StarTable& stars, std::span<const Reference> references,
+             std::span<const Vec3d> points, mesh::ThreadPool& pool);
 
   // out = H in, by vertex number.
   void apply(std::span<const Tangent> in, std::span<Tangent> out, mesh::ThreadPool& pool) const;
 
 private:
   using Block = std::array<float, 4>; // 2 x 2, row-major
-  void build_row(mesh::Index v, std::span<const Reference> references, std::span<const Vec3d> points);
+  template <class Energy>
+  void build_row(const Energy& energy, mesh::Index v, std::span<const Reference> references,
+                 std::span<const Vec3d> points);
 
   const StarTable* stars_ = nullptr;
   std::vector<Block> own_;       // by vertex
@@ -43,7 +37,7 @@ private:
 };
 
 // The exact gradient of the whole energy in the tangent planes.
-void tangent_gradient(const StarTable& stars, std::span<const Reference> references, std::span<const Vec3d> points,
-                      std::span<Tangent> out, mesh::ThreadPool& pool);
+void tangent_gradient(const TriangleEnergy& energy, const StarTable& stars, std::span<const Reference> references,
+                      std::span<const Vec3d> points, std::span<Tangent> out, mesh::ThreadPool& pool);
 
 } // namespace orbis::sphere

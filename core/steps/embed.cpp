@@ -119,9 +119,7 @@ private:
 
   void embed(std::uint32_t c, const mesh::TriangleMesh& mesh, std::uint32_t threads, Progress& progress) {
     sphere::Embedding& out = embeddings_[c];
-    out = options_.objective == Objective::shape_preserving
-              ? sphere::embed_shape_preserving(mesh, options_.threshold, progress)
-              : sphere::embed_isometric(mesh, options_.quality, threads, progress);
+    out = sphere::embed(mesh, options_, threads, progress);
     minimum_[c] = sphere::shape_preserving_energy(mesh, out.points);
     const std::vector<Vec3d> turned = sphere::canonically_turned(mesh, std::move(out.points));
     std::ranges::copy(turned, points_.begin() + surface_.components[c].first_vertex);

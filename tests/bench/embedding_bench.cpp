@@ -87,9 +87,7 @@ Run run_once(const mesh::TriangleMesh& mesh, const Options& options) {
   Run out;
   const auto wall = std::chrono::steady_clock::now();
   const std::clock_t cpu = std::clock();
-  out.embedding = options.objective == Objective::isometric
-                      ? sphere::embed_isometric(mesh, options.quality, options.threads, progress)
-                      : sphere::embed_shape_preserving(mesh, options.threshold, progress);
+  out.embedding = sphere::embed(mesh, options, options.threads, progress);
   out.cpu = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
   out.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
   return out;

@@ -16,7 +16,9 @@ namespace {
 
 // A convex mesh on its own sphere: not where the energy is least, but without a fold.
 struct Scene {
-  explicit Scene(const mesh::TriangleMesh& m, std::uint32_t threads = 1) : pool(threads), mesh(m) {
+  explicit Scene(const mesh::TriangleMesh& m, std::uint32_t threads = 1,
+                 const sphere::TriangleEnergy& of = sphere::SymmetricDirichlet{})
+      : pool(threads), energy_of(of), mesh(m) {
     NoProgress progress;
     hierarchy = sphere::build_hierarchy(mesh, pool, progress);
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) points.push_back(normalized(Vec3d(mesh.positions[v])));
@@ -26,15 +28,19 @@ struct Scene {
     std::vector<sphere::StarTerm> star;
     for (mesh::Index v = 0; v < points.size(); ++v) {
       sphere::gather_star(v, stars, references, points, star);
-      basis->keep_stiffness(v, sphere::expand(star, points[v], sphere::TangentFrame(points[v])), points[v]);
+      const sphere::TangentFrame frame(points[v]);
+      basis->keep_stiffness(
+          v, std::visit([&](const auto& e) { return sphere::expand(e, star, points[v], frame); }, energy_of),
+          points[v]);
     }
     basis->prepare(points);
   }
 
-  [[nodiscard]] sphere::FinestLevel level() const { return {mesh.triangles, stars, references}; }
-  [[nodiscard]] double energy() { return sphere::total_energy(mesh.triangles, references, points, pool); }
+  [[nodiscard]] sphere::FinestLevel level() const { return {energy_of, mesh.triangles, stars, references}; }
+  [[nodiscard]] double energy() { return sphere::total_energy(energy_of, mesh.triangles, references, points, pool); }
 
   mesh::ThreadPool pool;
+  sphere::TriangleEnergy energy_of;
   mesh::TriangleMesh mesh;
   sphere::Hierarchy hierarchy;
   sphere::StarTable stars;
@@ -85,7 +91,7 @@ TEST_CASE("the Hessian is symmetric and positive semi-definite") {
   Scene scene(ellipsoid(4));
   const std::size_t n = scene.points.size();
   sphere::TangentHessian hessian;
-  hessian.build(scene.stars, scene.references, scene.points, scene.pool);
+  hessian.build(scene.energy_of, scene.stars, scene.references, scene.points, scene.pool);
   for (std::uint32_t seed = 0; seed < 10; ++seed) {
     const std::vector<Tangent> a = random_field(n, seed), b = random_field(n, seed + 100);
     std::vector<Tangent> ha(n), hb(n);
@@ -101,7 +107,7 @@ TEST_CASE("where nothing is indefinite, the Hessian is the derivative of the gra
   Scene scene(shapes::sphere(5));
   const std::size_t n = scene.points.size();
   sphere::TangentHessian hessian;
-  hessian.build(scene.stars, scene.references, scene.points, scene.pool);
+  hessian.build(scene.energy_of, scene.stars, scene.references, scene.points, scene.pool);
   // A smooth field, small against the triangles.
   std::vector<Tangent> field(n), image(n), before(n), after(n);
   const auto moved = [&](double t) {
@@ -116,8 +122,8 @@ TEST_CASE("where nothing is indefinite, the Hessian is the derivative of the gra
     return points;
   };
   const double t = 1e-4;
-  sphere::tangent_gradient(scene.stars, scene.references, moved(-t), before, scene.pool);
-  sphere::tangent_gradient(scene.stars, scene.references, moved(t), after, scene.pool);
+  sphere::tangent_gradient(scene.energy_of, scene.stars, scene.references, moved(-t), before, scene.pool);
+  sphere::tangent_gradient(scene.energy_of, scene.stars, scene.references, moved(t), after, scene.pool);
   hessian.apply(field, image, scene.pool);
   double along = 0;
   for (std::size_t v = 0; v < n; ++v) {
