@@ -1,0 +1,34 @@
+#include "core/lod/extract.h"
+
+namespace orbis::lod {
+
+Level extract(const FullSurface& full, const WedgeMesh& mesh) {
+  Level level;
+  texture::CutMesh& out = level.mesh;
+  std::vector<std::uint32_t> number(mesh.wedges.size(), none), point_number(mesh.points.size(), none);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!mesh.is_alive[t]) continue;
+    mesh::Triangle triangle{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t w = mesh.triangles[t][k];
+      const Wedge& wedge = mesh.wedges[w];
+      const Point& point = mesh.points[wedge.point];
+      std::uint32_t& new_point = point_number[wedge.point];
+      if (new_point == none) new_point = static_cast<std::uint32_t>(out.points++);
+      if (number[w] == none) {
+        number[w] = static_cast<std::uint32_t>(out.vertices.size());
+        out.vertices.push_back({wedge.source, wedge.weights, point.sphere, wedge.uv, new_point});
+        level.positions.push_back(full.in_model(point.position));
+        level.near.push_back(wedge.near);
+      }
+      triangle[k] = number[w];
+    }
+    out.triangles.push_back(triangle);
+    level.regions.push_back(mesh.wedges[mesh.triangles[t][0]].region);
+    out.parent.push_back(mesh.parent[t]);
+    out.face.push_back(full.cut().face[t]);
+  }
+  return level;
+}
+
+} // namespace orbis::lod

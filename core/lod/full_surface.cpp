@@ -1,0 +1,85 @@
+#include "core/lod/full_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace orbis::lod {
+namespace {
+
+double area_of(const Vec2f& a, const Vec2f& b, const Vec2f& c) {
+  return 0.5 * ((double{b.x} - a.x) * (double{c.y} - a.y) - (double{c.x} - a.x) * (double{b.y} - a.y));
+}
+
+} // namespace
+
+FullSurface::FullSurface(const mesh::TriangleMesh& surface, std::span<const std::uint32_t> primitive_of,
+                         const texture::CutMesh& cut)
+    : surface_(surface), cut_(cut) {
+  scale_positions();
+  number_regions(primitive_of);
+  chart_map_.emplace(cut_, regions_);
+}
+
+void FullSurface::scale_positions() {
+  positions_.reserve(cut_.vertices.size());
+  for (const texture::CutVertex& v : cut_.vertices) {
+    Vec3d p;
+    for (std::size_t k = 0; k < 3; ++k)
+      p += Vec3d(surface_.positions[surface_.triangles[v.triangle][k]]) * v.barycentric[k];
+    positions_.push_back(p);
+  }
+  if (positions_.empty()) return;
+  Vec3d low = positions_[0], high = positions_[0];
+  for (const Vec3d& p : positions_) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  centre_ = low * 0.5 + high * 0.5;
+  diagonal_ = norm(high - low);
+  for (Vec3d& p : positions_) p = (p - centre_) * (1 / diagonal_);
+
+  double in_space = 0, in_atlas = 0;
+  for (const auto& [a, b, c] : cut_.triangles) {
+    in_space += 0.5 * norm(cross(positions_[b] - positions_[a], positions_[c] - positions_[a]));
+    in_atlas += std::abs(area_of(cut_.vertices[a].uv, cut_.vertices[b].uv, cut_.vertices[c].uv));
+  }
+  uv_scale_ = in_atlas > 0 ? std::sqrt(in_space / in_atlas) : 1;
+}
+
+void FullSurface::number_regions(std::span<const std::uint32_t> primitive_of) {
+  std::uint32_t primitives = 0;
+  for (const std::uint32_t p : primitive_of) primitives = std::max(primitives, p + 1);
+  regions_.reserve(cut_.triangles.size());
+  for (std::size_t t = 0; t < cut_.triangles.size(); ++t)
+    regions_.push_back(cut_.face[t] * primitives + primitive_of[cut_.parent[t]]);
+}
+
+Vec3d FullSurface::position(const Place& place) const {
+  Vec3d p;
+  for (std::size_t k = 0; k < 3; ++k) p += positions_[cut_.triangles[place.triangle][k]] * place.weights[k];
+  return p;
+}
+
+std::array<double, 3> FullSurface::weights_on_parent(const Place& place) const {
+  std::array<double, 3> weights{};
+  const mesh::Triangle& parent = surface_.triangles[cut_.parent[place.triangle]];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const texture::CutVertex& v = cut_.vertices[cut_.triangles[place.triangle][k]];
+    for (std::size_t i = 0; i < 3; ++i) {
+      // A vertex on an edge or at a corner may name the triangle on its other side: they share the vertices that count.
+      const mesh::Index id = surface_.triangles[v.triangle][i];
+      for (std::size_t j = 0; j < 3; ++j)
+        if (parent[j] == id) weights[j] += place.weights[k] * v.barycentric[i];
+    }
+  }
+  return weights;
+}
+
+sphere::GridPoint FullSurface::sphere_point(const Place& place) const {
+  Vec3d s;
+  for (std::size_t k = 0; k < 3; ++k)
+    s += Vec3d(sphere::from_grid(cut_.vertices[cut_.triangles[place.triangle][k]].sphere)) * place.weights[k];
+  return sphere::to_grid(normalized(s));
+}
+
+} // namespace orbis::lod

@@ -1,0 +1,58 @@
+// The full-resolution surface as its levels of detail see it: a map from the atlas to space.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/lod/chart_map.h"
+#include "core/mesh/triangle_mesh.h"
+#include "core/texture/atlas.h"
+
+namespace orbis::lod {
+
+class FullSurface {
+public:
+  // surface: the welded mesh that `cut` divides; primitive_of: triangle of `surface` -> primitive. Both meshes outlive
+  // this object.
+  FullSurface(const mesh::TriangleMesh& surface, std::span<const std::uint32_t> primitive_of,
+              const texture::CutMesh& cut);
+
+  [[nodiscard]] const texture::CutMesh& cut() const { return cut_; }
+  [[nodiscard]] const mesh::TriangleMesh& surface() const { return surface_; }
+  // Cut vertex -> its point in space, scaled so that the bounding box has its centre at 0 and a diagonal of 1.
+  [[nodiscard]] std::span<const Vec3d> positions() const { return positions_; }
+  // Cut triangle -> number of its region: the triangles of one primitive in one chart.
+  [[nodiscard]] std::span<const std::uint32_t> regions() const { return regions_; }
+  // Length in space per length in the atlas, as the areas say: uv times this is in the units of positions().
+  [[nodiscard]] double uv_scale() const { return uv_scale_; }
+
+  // From scaled coordinates back to the model's.
+  [[nodiscard]] Vec3f in_model(const Vec3d& scaled) const { return Vec3f(scaled * diagonal_ + centre_); }
+  [[nodiscard]] Vec3d in_scale(const Vec3f& p) const { return (Vec3d(p) - centre_) * (1 / diagonal_); }
+  [[nodiscard]] double diagonal() const { return diagonal_; }
+
+  // Places on it by their uv.
+  [[nodiscard]] const ChartMap& chart_map() const { return *chart_map_; }
+
+  [[nodiscard]] Vec3d position(const Place& place) const;
+  // The place on the welded surface: its weights on the corners of the triangle cut().parent[place.triangle].
+  [[nodiscard]] std::array<double, 3> weights_on_parent(const Place& place) const;
+  [[nodiscard]] sphere::GridPoint sphere_point(const Place& place) const;
+
+private:
+  void scale_positions();
+  void number_regions(std::span<const std::uint32_t> primitive_of);
+
+  const mesh::TriangleMesh& surface_;
+  const texture::CutMesh& cut_;
+  std::vector<Vec3d> positions_;
+  std::vector<std::uint32_t> regions_;
+  std::optional<ChartMap> chart_map_; // made after the regions
+  Vec3d centre_;
+  double diagonal_ = 1, uv_scale_ = 1;
+};
+
+} // namespace orbis::lod

@@ -1,0 +1,201 @@
+#include "core/lod/simplify.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <queue>
+
+#include "core/lod/collapse.h"
+#include "core/lod/extract.h"
+#include "core/lod/fit_positions.h"
+
+namespace orbis::lod {
+namespace {
+
+constexpr std::uint32_t attempts = 3;
+constexpr std::uint32_t report_interval = 1U << 12U;
+
+// The next edge to collapse, valid as long as neither end has changed.
+struct Candidate {
+  float cost;
+  std::uint32_t a, b;
+  std::uint32_t versions; // of both ends, added
+  std::uint32_t attempt;
+
+  // Greater means later; equal costs go by the edge, so that the order is one.
+  friend bool operator>(const Candidate& x, const Candidate& y) {
+    if (x.cost != y.cost) return x.cost > y.cost;
+    return x.a != y.a ? x.a > y.a : x.b > y.b;
+  }
+};
+
+class Simplifier {
+public:
+  Simplifier(const FullSurface& full, double gutter, Progress& progress)
+      : full_(full), gutter_(gutter), progress_(progress), mesh_(full), collapser_(full, mesh_) {
+    first_count_ = mesh_.triangle_count;
+    fill_queue();
+  }
+
+  Level next(const Target& target) {
+    while (!is_met(target)) {
+      if (step(target)) continue;
+      if (stopped_by_bound_) break;
+      // The queue ran dry. What was refused may be possible by now; if nothing was, something has to give way.
+      if (collapsed_since_filled_ == 0 && !concede(target)) break;
+      fill_queue();
+    }
+    concessions_.is_short = target.triangles > 0 && mesh_.triangle_count > target.triangles && !stopped_by_bound_;
+    Level level = extract(full_, mesh_);
+    fit_positions(full_, level);
+    level.concessions = concessions_;
+    level.deviation = std::sqrt(largest_);
+    return level;
+  }
+
+private:
+  [[nodiscard]] bool is_met(const Target& target) const { return mesh_.triangle_count <= target.triangles; }
+
+  void fill_queue() {
+    queue_ = {};
+    collapsed_since_filled_ = 0;
+    std::vector<std::uint32_t> ring;
+    for (std::uint32_t p = 0; p < mesh_.points.size(); ++p) {
+      if (!mesh_.points[p].is_alive) continue;
+      mesh_.neighbours_of(p, ring);
+      for (const std::uint32_t q : ring)
+        if (p < q) push(p, q, 0);
+    }
+  }
+
+  void push(std::uint32_t a, std::uint32_t b, std::uint32_t attempt) {
+    if (a > b) std::swap(a, b);
+    for (; attempt < attempts; ++attempt) {
+      const std::optional<Collapse> collapse = collapser_.propose(a, b, attempt);
+      if (!collapse) continue;
+      queue_.push({static_cast<float>(collapse->cost), a, b, versions(a, b), attempt});
+      return;
+    }
+  }
+
+  [[nodiscard]] std::uint32_t versions(std::uint32_t a, std::uint32_t b) const {
+    return mesh_.points[a].version + mesh_.points[b].version;
+  }
+
+  // Takes the next candidate; false where there is none or the bound forbids it.
+  bool step(const Target& target) {
+    if (queue_.empty()) return false;
+    const Candidate next = queue_.top();
+    const bool is_alive = mesh_.points[next.a].is_alive && mesh_.points[next.b].is_alive;
+    if (!is_alive || next.versions != versions(next.a, next.b)) {
+      queue_.pop();
+      return true;
+    }
+    const std::optional<Collapse> collapse = collapser_.propose(next.a, next.b, next.attempt);
+    if (!collapse) {
+      queue_.pop();
+      return true;
+    }
+    const double deviation = squared_deviation(*collapse);
+    stopped_by_bound_ = target.deviation > 0 && deviation > target.deviation * target.deviation;
+    if (stopped_by_bound_) return false;
+    queue_.pop();
+    if (!collapser_.perform(*collapse, constraints_)) {
+      push(next.a, next.b, next.attempt + 1);
+      return true;
+    }
+    largest_ = std::max(largest_, deviation);
+    ++collapsed_since_filled_;
+    mesh_.neighbours_of(collapse->kept, ring_);
+    for (const std::uint32_t q : ring_) push(collapse->kept, q, 0);
+    report();
+    return true;
+  }
+
+  // Q over its weights: the mean square deviation that the collapse would leave.
+  [[nodiscard]] double squared_deviation(const Collapse& collapse) const {
+    double weight = 0;
+    const auto& [at_removed, at_kept, triangles] = collapse.sides;
+    for (const auto& at : {at_removed, at_kept})
+      weight += mesh_.quadrics[at[0]].weight + (at[1] != at[0] ? mesh_.quadrics[at[1]].weight : 0);
+    return weight > 0 ? collapse.cost / weight : 0;
+  }
+
+  bool concede(const Target& target) {
+    if (constraints_.keeps_normals) {
+      constraints_.keeps_normals = false;
+      concessions_.turned_normals = true;
+    } else if (constraints_.outline_tolerance < gutter_) {
+      concessions_.outline = constraints_.outline_tolerance = gutter_;
+    } else if (constraints_.outline_tolerance < 1) {
+      concessions_.outline = constraints_.outline_tolerance = 1;
+    } else {
+      return drop_component(target);
+    }
+    return true;
+  }
+
+  // Gives the smallest component up, by its area on the full surface. The last one stays.
+  bool drop_component(const Target&) {
+    std::vector<std::uint32_t> of_point(mesh_.points.size(), none), ring, stack;
+    std::vector<double> area;
+    std::vector<std::uint32_t> first;
+    for (std::uint32_t p = 0; p < mesh_.points.size(); ++p) {
+      if (!mesh_.points[p].is_alive || of_point[p] != none) continue;
+      const auto component = static_cast<std::uint32_t>(area.size());
+      area.push_back(0);
+      first.push_back(p);
+      of_point[p] = component;
+      stack.assign(1, p);
+      while (!stack.empty()) {
+        const std::uint32_t q = stack.back();
+        stack.pop_back();
+        mesh_.for_each_corner(
+            q, [&](std::uint32_t c) { area.back() += mesh_.quadrics[mesh_.triangles[c / 3][c % 3]].weight; });
+        mesh_.neighbours_of(q, ring);
+        for (const std::uint32_t r : ring) {
+          if (of_point[r] != none) continue;
+          of_point[r] = component;
+          stack.push_back(r);
+        }
+      }
+    }
+    if (area.size() < 2) return false;
+    const auto smallest = std::min_element(area.begin(), area.end()) - area.begin();
+    concessions_.lost_triangles += mesh_.remove_component(first[static_cast<std::size_t>(smallest)]);
+    ++concessions_.lost_components;
+    return true;
+  }
+
+  void report() {
+    if (++collapses_ % report_interval != 0) return;
+    progress_.check();
+    progress_.report(Stage::levels, first_count_ - mesh_.triangle_count, first_count_);
+  }
+
+  const FullSurface& full_;
+  double gutter_;
+  Progress& progress_;
+  WedgeMesh mesh_;
+  Collapser collapser_;
+  Constraints constraints_;
+  Concessions concessions_;
+  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
+  std::vector<std::uint32_t> ring_;
+  std::uint64_t first_count_ = 0, collapses_ = 0, collapsed_since_filled_ = 0;
+  double largest_ = 0;
+  bool stopped_by_bound_ = false;
+};
+
+} // namespace
+
+std::vector<Level> simplify(const FullSurface& full, std::span<const Target> targets, double gutter,
+                            Progress& progress) {
+  Simplifier simplifier(full, gutter, progress);
+  std::vector<Level> levels;
+  levels.reserve(targets.size());
+  for (const Target& target : targets) levels.push_back(simplifier.next(target));
+  return levels;
+}
+
+} // namespace orbis::lod

@@ -1,0 +1,54 @@
+// Levels of detail on one atlas: the delivered mesh with fewer and fewer triangles, its map kept fold-free.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/lod/full_surface.h"
+#include "core/progress.h"
+#include "core/texture/atlas.h"
+#include "core/vec3.h"
+
+namespace orbis::lod {
+
+// When a level is coarse enough. The coarsest that a bound allows where it gives one, else the number of triangles.
+struct Target {
+  std::uint64_t triangles = 0; // as many at most; 0: as few as the bound allows
+  double deviation = 0;        // root mean square, at any vertex, as a fraction of the bounding box's diagonal; 0: any
+};
+
+// What had to give way for a target, in the order in which it does.
+struct Concessions {
+  bool turned_normals = false; // triangles may turn by more than 80 degrees in one step
+  double outline = 0;          // how far, in the atlas, a seam may have left the outline of the full surface's charts
+  std::uint64_t lost_components = 0; // components left out, the smallest first
+  std::uint64_t lost_triangles = 0;  // that those had
+  bool is_short = false;             // the target was not reached for all that
+};
+
+struct Level {
+  // The level as a cut of the full surface: each vertex with its place on a triangle of the welded surface, where its
+  // attributes come from, its unit vector and its place in the atlas. Points are numbered anew.
+  texture::CutMesh mesh;
+  std::vector<Vec3f> positions;       // one per vertex; the same bits at every copy of a point
+  std::vector<std::uint32_t> near;    // vertex -> a triangle of the full surface's cut close to it in the atlas
+  std::vector<std::uint32_t> regions; // triangle -> region, as in FullSurface
+  Concessions concessions;
+  double deviation = 0; // the largest root mean square deviation that the quadrics have seen, fraction of the diagonal
+};
+
+// Edge collapses in the order of their texture deviation (deviation_quadric.h), one level after the other.
+//
+//   targets  from fine to coarse; a target that is already met gives the level before it again
+//   gutter   of the atlas, in the atlas' units: seams may go as far off their outline before components are given up
+//
+// On every level: triangles are positively oriented in the atlas and on the sphere, exactly, wherever those of the full
+// surface are; a component stays a closed surface of genus 0; copies of a point along a seam agree to the bit. Seams
+// are straightened only where that moves nothing, until a target cannot be met otherwise. No level is empty.
+//
+// O(n log n). One thread, deterministic. Reports Stage::levels; throws Error{canceled}.
+[[nodiscard]] std::vector<Level> simplify(const FullSurface& full, std::span<const Target> targets, double gutter,
+                                          Progress& progress);
+
+} // namespace orbis::lod

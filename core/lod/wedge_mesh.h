@@ -1,0 +1,88 @@
+// A mesh under simplification: points in space, and their wedges, which are what a region of the atlas sees of them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/lod/deviation_quadric.h"
+#include "core/lod/full_surface.h"
+
+namespace orbis::lod {
+
+// interior: one wedge all around. seam: two seam edges end here. fixed: where seams meet or end.
+enum class PointKind : std::uint8_t { interior, seam, fixed };
+
+struct Wedge {
+  std::uint32_t point = 0, region = 0;
+  Vec2f uv;
+  // Where its attributes come from: a place on a triangle of the welded surface.
+  std::uint32_t source = 0;
+  std::array<double, 3> weights{};
+  std::uint32_t near = 0; // a triangle of the cut mesh close by, where walks begin
+};
+
+struct Point {
+  Vec3d position; // scaled as in FullSurface
+  sphere::GridPoint sphere{};
+  std::uint32_t first_corner = none; // of the list of corners that lie here
+  std::uint32_t version = 0;         // counts the changes around the point
+  PointKind kind = PointKind::interior;
+  float drift = 0; // how far seams through here have left the outline of the full surface's charts, in the atlas
+  bool is_alive = true;
+};
+
+// The two wedges of an edge (a, b) on each of its two sides.
+struct EdgeSides {
+  std::array<std::uint32_t, 2> at_a{}, at_b{}, triangle{};
+  [[nodiscard]] bool is_seam() const { return at_a[0] != at_a[1] || at_b[0] != at_b[1]; }
+};
+
+// Corner 3 t + k is corner k of triangle t.
+class WedgeMesh {
+public:
+  explicit WedgeMesh(const FullSurface& full);
+
+  std::vector<Point> points;
+  std::vector<Wedge> wedges;
+  std::vector<DeviationQuadric> quadrics; // one per wedge
+  std::vector<mesh::Triangle> triangles;  // wedges
+  std::vector<std::uint32_t> parent;      // triangle -> triangle of the welded surface
+  std::vector<bool> is_alive;             // by triangle
+  std::uint64_t triangle_count = 0;       // of those alive
+
+  [[nodiscard]] std::uint32_t point_at(std::uint32_t corner) const {
+    return wedges[triangles[corner / 3][corner % 3]].point;
+  }
+  // Calls visit(corner) for each triangle around a point.
+  template <class Visit> void for_each_corner(std::uint32_t point, Visit visit) const {
+    for (std::uint32_t c = points[point].first_corner; c != none; c = next_corner_[c])
+      if (is_alive[c / 3]) visit(c);
+  }
+  // The wedges on both sides of an edge; nothing where it does not have exactly two triangles.
+  [[nodiscard]] std::optional<EdgeSides> sides_of(std::uint32_t a, std::uint32_t b) const;
+  // The points around a point, each once, in the order in which the triangles were listed.
+  void neighbours_of(std::uint32_t point, std::vector<std::uint32_t>& out) const;
+  // Link condition of Dey et al., Topology preserving edge contraction (1999), on a closed surface: the ends have
+  // exactly two neighbours in common, and more than four points remain connected.
+  [[nodiscard]] bool link_condition(std::uint32_t a, std::uint32_t b);
+
+  // Removes the triangles of the edge and hands the others around `removed` to `kept`; wedges of `removed` become those
+  // of `kept` as `sides` pairs them, their quadrics are added.
+  void contract(std::uint32_t removed, std::uint32_t kept, const EdgeSides& removed_to_kept);
+
+  // Takes all triangles of the component that a point belongs to away; returns how many there were.
+  std::uint64_t remove_component(std::uint32_t point);
+
+private:
+  void make_wedges(const FullSurface& full);
+  void list_corners();
+  void classify();
+
+  std::vector<std::uint32_t> next_corner_;
+  std::vector<std::uint32_t> mark_; // by point, for link_condition
+  std::uint32_t marks_ = 0;
+};
+
+} // namespace orbis::lod
