@@ -57,6 +57,25 @@ Json atlas_json(const Report::Atlas& a) {
           {"source", a.source}};
 }
 
+Json level_json(const Report::Level& level) {
+  return {{"target", level.target},
+          {"triangles", level.triangles},
+          {"vertices", level.vertices},
+          {"mean_distance", level.mean_distance},
+          {"mean_distance_from_full", level.mean_distance_from_full},
+          {"hausdorff_distance", level.hausdorff_distance},
+          {"texture_deviation", level.texture_deviation},
+          {"texture_deviation_max", level.texture_deviation_max},
+          {"outside", level.outside},
+          {"screen_coverage", level.screen_coverage},
+          {"folded", level.folded},
+          {"degree", level.degree},
+          {"turned_normals", level.turned_normals},
+          {"reached", level.reached},
+          {"outline_texels", level.outline_texels},
+          {"lost_components", level.lost_components}};
+}
+
 Timing timing_of(const Report& report) {
   Timing timing;
   double wall = 0, cpu = 0;
@@ -78,6 +97,8 @@ Json to_json(const Report& report) {
   for (const Note& note : report.notes) {
     notes.push_back({{"code", note.code}, {"message", note.message}, {"where", note.where}});
   }
+  Json levels = Json::array();
+  for (const Report::Level& level : report.levels) levels.push_back(level_json(level));
   return {{"version", ORBIS_VERSION},
           {"format", report.format},
           {"options", to_json(report.options)},
@@ -94,6 +115,7 @@ Json to_json(const Report& report) {
             {"converged", report.converged}}},
           {"distortion", distortion_json(report.distortion)},
           {"atlas", atlas_json(report.atlas)},
+          {"levels", std::move(levels)},
           {"output", {{"triangles", report.output_triangles}, {"vertices", report.output_vertices}}},
           {"certificate", certificate_json(report.certificate)},
           {"cut_certificate", certificate_json(report.cut_certificate)},

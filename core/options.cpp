@@ -1,5 +1,6 @@
 #include "core/options.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -9,7 +10,7 @@
 namespace orbis {
 namespace {
 
-constexpr std::array<OptionInfo, 10> table{{
+constexpr std::array<OptionInfo, 11> table{{
     {"objective", "isometric | conformal | stretch | shape-preserving", "isometric",
      "what the map keeps: lengths as far as possible, angles, texture resolution, or the paper's shape-preserving "
      "weights"},
@@ -25,6 +26,8 @@ constexpr std::array<OptionInfo, 10> table{{
     {"texture_format", "png | jpeg", "png", "how the atlas is stored in the result"},
     {"jpeg_quality", "1 to 100", "90", "with texture_format=jpeg"},
     {"compression", "none | draco", "none", "how the geometry is stored in the result"},
+    {"lods", "a list such as 0.25,0.05,0.01: parts of the triangles, their numbers, or deviation:0.1", "",
+     "levels of detail on the same atlas, from fine to coarse; deviation: in per cent of the model's diagonal"},
     {"threads", "0 to 256", "0", "threads of the embedding, 0 for as many as the machine has; the result is the same"},
 }};
 
@@ -65,6 +68,40 @@ constexpr std::array<std::string_view, 4> sources{"auto", "pattern", "cubemap", 
 constexpr std::array<std::string_view, 2> formats{"png", "jpeg"};
 constexpr std::array<std::string_view, 2> compressions{"none", "draco"};
 
+// "0.25", "5000" or "deviation:0.1".
+LodTarget lod_target(std::string_view name, std::string_view list, std::string_view text) {
+  constexpr std::string_view deviation = "deviation:";
+  const bool is_deviation = text.starts_with(deviation);
+  if (is_deviation) text.remove_prefix(deviation.size());
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !(value > 0)) refuse(name, list);
+  if (is_deviation) {
+    if (value > 100) refuse(name, list);
+    return {LodTarget::Kind::deviation, value};
+  }
+  if (value <= 1) return {LodTarget::Kind::ratio, value};
+  if (value < 4 || value > 4e9 || value != std::floor(value)) refuse(name, list);
+  return {LodTarget::Kind::triangles, value};
+}
+
+std::vector<LodTarget> lod_targets(std::string_view name, std::string_view list) {
+  std::vector<LodTarget> targets;
+  for (std::string_view rest = list; !rest.empty();) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    targets.push_back(lod_target(name, list, rest.substr(0, comma)));
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+    // Of one kind they must get coarser.
+    for (const LodTarget& before : std::span(targets).first(targets.size() - 1)) {
+      const LodTarget& last = targets.back();
+      const bool grows = last.value > before.value;
+      if (last.kind == before.kind && grows != (last.kind == LodTarget::Kind::deviation)) refuse(name, list);
+    }
+  }
+  if (targets.size() > most_lods) refuse(name, list);
+  return targets;
+}
+
 template <class E, std::size_t N> std::string text_of(E value, const std::array<std::string_view, N>& names) {
   return std::string(names.at(static_cast<std::size_t>(value)));
 }
@@ -74,6 +111,16 @@ std::string text_of(double value) {
   std::array<char, 32> buffer{};
   const char* end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
   return {buffer.data(), static_cast<std::size_t>(end - buffer.data())};
+}
+
+std::string text_of(const std::vector<LodTarget>& targets) {
+  std::string text;
+  for (const LodTarget& target : targets) {
+    text += text.empty() ? "" : ",";
+    if (target.kind == LodTarget::Kind::deviation) text += "deviation:";
+    text += text_of(target.value);
+  }
+  return text;
 }
 
 } // namespace
@@ -101,6 +148,8 @@ void set_option(Options& options, std::string_view name, std::string_view value)
     options.jpeg_quality = number<std::uint32_t>(name, value, 1, 100);
   } else if (name == "compression") {
     options.compression = choice<Compression>(name, value, compressions);
+  } else if (name == "lods") {
+    options.lods = lod_targets(name, value);
   } else if (name == "threads") {
     options.threads = number<std::uint32_t>(name, value, 0, 256);
   } else {
@@ -118,6 +167,7 @@ std::string get_option(const Options& options, std::string_view name) {
   if (name == "texture_format") return text_of(options.texture_format, formats);
   if (name == "jpeg_quality") return std::to_string(options.jpeg_quality);
   if (name == "compression") return text_of(options.compression, compressions);
+  if (name == "lods") return text_of(options.lods);
   if (name == "threads") return std::to_string(options.threads);
   refuse(name, "");
 }

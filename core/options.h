@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace orbis {
 
@@ -14,6 +15,15 @@ enum class Quality { draft, standard, high };
 enum class TextureSource { automatic, pattern, cubemap, base_color };
 enum class TextureFormat { png, jpeg };
 enum class Compression { none, draco };
+
+// When a level of detail is coarse enough.
+struct LodTarget {
+  enum class Kind { triangles, ratio, deviation } kind = Kind::ratio;
+  // Triangles at most; or as a part of the surface's; or the texture deviation allowed, in per cent of the diagonal.
+  double value = 0;
+  friend bool operator==(const LodTarget&, const LodTarget&) = default;
+};
+inline constexpr std::size_t most_lods = 8;
 
 struct Options {
   Objective objective = Objective::isometric;
@@ -29,6 +39,7 @@ struct Options {
   TextureFormat texture_format = TextureFormat::png;
   std::uint32_t jpeg_quality = 90; // 1 to 100
   Compression compression = Compression::none;
+  std::vector<LodTarget> lods; // levels of detail beside the full surface, from fine to coarse
   std::uint32_t threads = 0; // 0: as many as the machine has; the result does not depend on it
 };
 

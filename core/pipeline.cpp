@@ -6,6 +6,7 @@
 #include "core/asset/image_codec.h"
 #include "core/steps/delivery.h"
 #include "core/steps/dump.h"
+#include "core/steps/levels.h"
 #include "core/steps/embed.h"
 #include "core/steps/measure.h"
 #include "core/steps/paint.h"
@@ -62,15 +63,20 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   const texture::Image atlas = paint(request, limits, asset, surface, sphere.cut, delivery, layout, clock, report);
   result.preview_png = preview(surface, sphere.cut, atlas);
 
+  clock.report(Stage::levels, 0, 1);
+  const std::vector<DetailLevel> levels = make_levels(
+      asset, surface, sphere.cut, static_cast<double>(layout.gutter) / layout.width, clock, report);
+
   clock.report(Stage::encode, 0, 1);
   result.atlas_png = asset::encode_png(atlas);
   dump_bytes(dump, "4-atlas.png", result.atlas_png);
   dump_bytes(dump, "5-preview.png", result.preview_png);
   result.glb = asset::write_asset(asset, delivery.primitives, encode_atlas(atlas, result.atlas_png, request.options),
-                                  extras_of(report), request.options.compression);
+                                  extras_of(report), request.options.compression, in_asset(levels, report));
 
   clock.report(Stage::certify, 0, 1);
   certify_file(result.glb, asset, surface, sphere.points, delivery, report);
+  certify_levels(result.glb, asset, surface, levels, report);
   clock.report(Stage::certify, 1, 1);
 
   report.stages = clock.times();

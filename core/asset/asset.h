@@ -102,6 +102,12 @@ struct NewPrimitive {
   std::uint32_t atlas_texcoord = 0; // n
 };
 
+// A coarser version of the new primitives.
+struct NewLevel {
+  std::vector<NewPrimitive> primitives; // one per primitive of the asset; without indices where nothing is left of it
+  double screen_coverage = 0; // it may replace the level before where the model fills less of the screen's height
+};
+
 struct NewImage {
   Bytes bytes;
   std::string mime_type; // "image/png" or "image/jpeg"
@@ -113,8 +119,10 @@ struct NewImage {
 // document with one node, mesh and material. Materials that other primitives use too are cloned, not changed.
 // Buffers hold only what is still referenced. Same input, same bytes.
 // With Compression::draco the new primitives are written with KHR_draco_mesh_compression, positions and _SPHERE
-// lossless (the sphere coordinates must not be quantised: they would fold).
+// lossless (the sphere coordinates must not be quantised: they would fold). Levels of detail are added as MSFT_lod
+// (levels.h), their meshes behind the document's, level by level.
 [[nodiscard]] Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, const NewImage& atlas,
-                                std::string_view extras_json, Compression compression);
+                                std::string_view extras_json, Compression compression,
+                                std::span<const NewLevel> levels = {});
 
 } // namespace orbis::asset

@@ -23,15 +23,16 @@ constexpr std::string_view without_geometry[]{"KHR_materials_",    "EXT_material
                                               "KHR_xmp",           "KHR_xmp_json_ld",
                                               "KHR_interactivity", "EXT_structural_metadata",
                                               "EXT_mesh_features", "EXT_instance_features",
-                                              "EXT_mesh_manifold", "CESIUM_primitive_outline"};
+                                              "EXT_mesh_manifold", "CESIUM_primitive_outline",
+                                              lod_extension};
 
 constexpr std::string_view decoded[]{"KHR_draco_mesh_compression", "KHR_mesh_quantization", "EXT_meshopt_compression",
                                      "KHR_meshopt_compression"};
 
 constexpr std::string_view with_known_references[]{
-    "KHR_materials_",          "KHR_texture_",      "EXT_texture_webp",        "EXT_texture_avif", "MSFT_texture_dds",
-    "KHR_lights_punctual",     "KHR_node_",         "KHR_animation_pointer",   "KHR_xmp",          "KHR_xmp_json_ld",
-    "EXT_mesh_gpu_instancing", "EXT_mesh_manifold", "CESIUM_primitive_outline"};
+    "KHR_materials_",          "KHR_texture_",      "EXT_texture_webp",         "EXT_texture_avif", "MSFT_texture_dds",
+    "KHR_lights_punctual",     "KHR_node_",         "KHR_animation_pointer",    "KHR_xmp",          "KHR_xmp_json_ld",
+    "EXT_mesh_gpu_instancing", "EXT_mesh_manifold", "CESIUM_primitive_outline", lod_extension};
 
 // The nesting is bounded by Limits::max_json_depth. Extras are the application's own.
 void collect(const Json& value, std::set<std::string>& names) {

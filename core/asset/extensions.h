@@ -12,6 +12,7 @@ namespace orbis::asset {
 inline constexpr std::string_view draco_extension = "KHR_draco_mesh_compression";
 inline constexpr std::string_view quantization_extension = "KHR_mesh_quantization";
 inline constexpr std::string_view transform_extension = "KHR_texture_transform";
+inline constexpr std::string_view lod_extension = "MSFT_lod";
 inline constexpr std::string_view meshopt_extensions[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
 
 // True where a document that requires the extension can still be read: orbis decodes it, or it changes nothing about

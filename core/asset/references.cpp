@@ -53,6 +53,7 @@ private:
     slot(n, "mesh", Kind::mesh);
     slot(n, "skin", Kind::skin);
     slot(n, "camera", Kind::camera);
+    if (J* levels = extension(n, lod_extension)) slots(*levels, "ids", Kind::node);
     if (J* instancing = extension(n, "EXT_mesh_gpu_instancing")) slots(*instancing, "attributes", Kind::accessor);
   }
 

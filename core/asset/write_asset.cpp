@@ -4,6 +4,7 @@
 #include "core/asset/asset.h"
 #include "core/asset/draco_encoder.h"
 #include "core/asset/extensions.h"
+#include "core/asset/levels.h"
 #include "core/asset/materials.h"
 #include "core/asset/output.h"
 
@@ -59,13 +60,11 @@ void check_new_primitive(const NewPrimitive& primitive) {
   if (!is_sound) throw Error(ErrorCode::internal, "a new primitive's indices and attributes do not fit together");
 }
 
-void replace_primitive(Output& out, const Primitive& old, const NewPrimitive& source, Compression compression) {
-  // A copy, since views and accessors that are added may move the document's parts.
-  Json primitive = out.json["meshes"][old.mesh]["primitives"][old.primitive];
+// A primitive of the document with new geometry.
+Json with_geometry(Output& out, Json primitive, const NewPrimitive& source, Compression compression) {
   // These describe the old vertices by their numbers.
   erase_extension(primitive, draco_extension);
   erase_extension(primitive, "CESIUM_primitive_outline");
-  erase_extension(out.json["meshes"][old.mesh], "EXT_mesh_manifold");
   write_geometry(out, primitive, source, compression);
   primitive.erase("mode"); // triangles are the default
   if (source.targets.empty()) {
@@ -75,6 +74,13 @@ void replace_primitive(Output& out, const Primitive& old, const NewPrimitive& so
     for (const auto& target : source.targets) targets.push_back(write_attributes(out, target));
     primitive["targets"] = std::move(targets);
   }
+  return primitive;
+}
+
+void replace_primitive(Output& out, const Primitive& old, const NewPrimitive& source, Compression compression) {
+  erase_extension(out.json["meshes"][old.mesh], "EXT_mesh_manifold");
+  // A copy goes in, since views and accessors that are added may move the document's parts.
+  Json primitive = with_geometry(out, out.json["meshes"][old.mesh]["primitives"][old.primitive], source, compression);
   out.json["meshes"][old.mesh]["primitives"][old.primitive] = std::move(primitive);
 }
 
@@ -202,7 +208,7 @@ void drop_dead_channels(Json& json, const Json& before) {
 } // namespace
 
 Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, const NewImage& atlas,
-                  std::string_view extras_json, Compression compression) {
+                  std::string_view extras_json, Compression compression, std::span<const NewLevel> levels) {
   if (primitives.size() != asset.primitives.size()) {
     throw Error(ErrorCode::internal, "there must be one new primitive for each of the asset's");
   }
@@ -218,6 +224,12 @@ Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, 
     users.push_back({old.mesh, old.primitive, primitives[i].atlas_texcoord});
   }
   assign_atlas(out.json, add_atlas(out, atlas), users);
+  for (const NewLevel& level : levels)
+    for (const NewPrimitive& primitive : level.primitives)
+      if (!primitive.indices.empty()) check_new_primitive(primitive);
+  add_levels(out, asset, primitives, levels, [&](const Json& base, const NewPrimitive& geometry) {
+    return with_geometry(out, base, geometry, compression);
+  });
   drop_dead_channels(out.json, document.json);
   if (!document.keeps_numbers) out.drop_unreferenced();
   update_extensions(out.json, document.json, primitives);

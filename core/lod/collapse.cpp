@@ -107,7 +107,7 @@ std::optional<Collapser::Goal> Collapser::goal_of(const Collapse& collapse) cons
   return goal;
 }
 
-bool Collapser::keeps_outline(const Collapse& collapse, double tolerance, double& drift) const {
+bool Collapser::keeps_outline(const Collapse& collapse, const Constraints& constraints, double& drift) const {
   // The seam's other neighbour, and its wedges on the two sides.
   std::vector<std::uint32_t> ring;
   mesh_.neighbours_of(collapse.removed, ring);
@@ -127,7 +127,7 @@ bool Collapser::keeps_outline(const Collapse& collapse, double tolerance, double
     if (distance <= rounding) return true;
     drift = distance +
             std::max({mesh_.points[collapse.removed].drift, mesh_.points[collapse.kept].drift, mesh_.points[q].drift});
-    return drift <= tolerance;
+    return drift <= (sides->is_border() ? constraints.border_tolerance : constraints.outline_tolerance);
   }
   return false;
 }
@@ -163,10 +163,9 @@ bool Collapser::keeps_triangles(const Collapse& collapse, const Goal& goal, cons
 
 bool Collapser::perform(const Collapse& collapse, const Constraints& constraints) {
   double drift = 0;
-  if (mesh_.points[collapse.removed].kind == PointKind::seam &&
-      !keeps_outline(collapse, constraints.outline_tolerance, drift))
+  if (mesh_.points[collapse.removed].kind == PointKind::seam && !keeps_outline(collapse, constraints, drift))
     return false;
-  if (!mesh_.link_condition(collapse.removed, collapse.kept)) return false;
+  if (!mesh_.link_condition(collapse.removed, collapse.kept, collapse.sides)) return false;
   const std::optional<Goal> goal = goal_of(collapse);
   if (!goal || !keeps_triangles(collapse, *goal, constraints)) return false;
 

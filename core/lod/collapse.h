@@ -15,6 +15,8 @@ struct Constraints {
   bool keeps_normals = true; // no triangle turns by more than some 80 degrees at once
   // How far, in the atlas, a seam may leave the outline of the full surface's charts. Rounding is always allowed.
   double outline_tolerance = 0;
+  // The same where the surface ends, at a hole or rim: there is no other side that would have to follow.
+  double border_tolerance = 0;
 };
 
 struct Collapse {
@@ -49,7 +51,7 @@ private:
   [[nodiscard]] std::optional<Collapse> keep(std::uint32_t kept, std::uint32_t removed, const EdgeSides& sides) const;
   [[nodiscard]] std::optional<Collapse> move_both(std::uint32_t a, std::uint32_t b, const EdgeSides& sides) const;
   [[nodiscard]] std::optional<Goal> goal_of(const Collapse& collapse) const;
-  [[nodiscard]] bool keeps_outline(const Collapse& collapse, double tolerance, double& drift) const;
+  [[nodiscard]] bool keeps_outline(const Collapse& collapse, const Constraints& constraints, double& drift) const;
   [[nodiscard]] bool keeps_triangles(const Collapse& collapse, const Goal& goal, const Constraints& constraints) const;
   [[nodiscard]] Uv scaled(const Vec2f& uv) const;
 

@@ -34,6 +34,7 @@ public:
   Simplifier(const FullSurface& full, double gutter, Progress& progress)
       : full_(full), gutter_(gutter), progress_(progress), mesh_(full), collapser_(full, mesh_) {
     first_count_ = mesh_.triangle_count;
+    constraints_.border_tolerance = 0.25 * gutter;
     fill_queue();
   }
 
@@ -42,7 +43,7 @@ public:
       if (step(target)) continue;
       if (stopped_by_bound_) break;
       // The queue ran dry. What was refused may be possible by now; if nothing was, something has to give way.
-      if (collapsed_since_filled_ == 0 && !concede(target)) break;
+      if (collapsed_since_filled_ == 0 && !concede()) break;
       fill_queue();
     }
     concessions_.is_short = target.triangles > 0 && mesh_.triangle_count > target.triangles && !stopped_by_bound_;
@@ -121,22 +122,22 @@ private:
     return weight > 0 ? collapse.cost / weight : 0;
   }
 
-  bool concede(const Target& target) {
+  bool concede() {
     if (constraints_.keeps_normals) {
       constraints_.keeps_normals = false;
       concessions_.turned_normals = true;
     } else if (constraints_.outline_tolerance < gutter_) {
-      concessions_.outline = constraints_.outline_tolerance = gutter_;
+      concessions_.outline = constraints_.outline_tolerance = constraints_.border_tolerance = gutter_;
     } else if (constraints_.outline_tolerance < 1) {
-      concessions_.outline = constraints_.outline_tolerance = 1;
+      concessions_.outline = constraints_.outline_tolerance = constraints_.border_tolerance = 1;
     } else {
-      return drop_component(target);
+      return drop_component();
     }
     return true;
   }
 
   // Gives the smallest component up, by its area on the full surface. The last one stays.
-  bool drop_component(const Target&) {
+  bool drop_component() {
     std::vector<std::uint32_t> of_point(mesh_.points.size(), none), ring, stack;
     std::vector<double> area;
     std::vector<std::uint32_t> first;

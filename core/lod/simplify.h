@@ -41,10 +41,12 @@ struct Level {
 // Edge collapses in the order of their texture deviation (deviation_quadric.h), one level after the other.
 //
 //   targets  from fine to coarse; a target that is already met gives the level before it again
-//   gutter   of the atlas, in the atlas' units: seams may go as far off their outline before components are given up
+//   gutter   of the atlas, in the atlas' units: what lies around a chart shows the chart's colours that far. Where the
+//            surface ends, its rim may leave the full surface's outline by a quarter of it; seams may not, until a
+//            target cannot be met otherwise
 //
 // On every level: triangles are positively oriented in the atlas and on the sphere, exactly, wherever those of the full
-// surface are; a component stays a closed surface of genus 0; copies of a point along a seam agree to the bit. Seams
+// surface are; a component keeps its topology; copies of a point along a seam agree to the bit. Seams
 // are straightened only where that moves nothing, until a target cannot be met otherwise. No level is empty.
 //
 // O(n log n). One thread, deterministic. Reports Stage::levels; throws Error{canceled}.

@@ -117,7 +117,12 @@ std::optional<EdgeSides> WedgeMesh::sides_of(std::uint32_t a, std::uint32_t b) c
       ++found;
     }
   });
-  if (found != 2) return std::nullopt;
+  if (found == 0 || found > 2) return std::nullopt;
+  if (found == 1) {
+    sides.at_a[1] = sides.at_a[0];
+    sides.at_b[1] = sides.at_b[0];
+    sides.triangle[1] = sides.triangle[0];
+  }
   return sides;
 }
 
@@ -131,7 +136,7 @@ void WedgeMesh::neighbours_of(std::uint32_t point, std::vector<std::uint32_t>& o
   });
 }
 
-bool WedgeMesh::link_condition(std::uint32_t a, std::uint32_t b) {
+bool WedgeMesh::link_condition(std::uint32_t a, std::uint32_t b, const EdgeSides& sides) {
   marks_ += 2;
   std::uint32_t around_a = 0, around_b = 0, common = 0;
   const auto for_each_neighbour = [&](std::uint32_t p, auto visit) {
@@ -148,13 +153,13 @@ bool WedgeMesh::link_condition(std::uint32_t a, std::uint32_t b) {
     around_b += mark_[q] != marks_ ? 1 : 0;
     mark_[q] = marks_;
   });
-  // Two points of valence 3 at one edge: a tetrahedron.
-  return common == 2 && around_a + around_b > 6;
+  // Two neighbours each at a border's edge: a triangle by itself. Three each at an inner edge: a tetrahedron.
+  return sides.is_border() ? common == 1 && around_a + around_b > 4 : common == 2 && around_a + around_b > 6;
 }
 
 void WedgeMesh::contract(std::uint32_t removed, std::uint32_t kept, const EdgeSides& removed_to_kept) {
   for (const std::uint32_t t : removed_to_kept.triangle) is_alive[t] = false;
-  triangle_count -= 2;
+  triangle_count -= removed_to_kept.is_border() ? 1 : 2;
   const auto& from = removed_to_kept.at_a;
   const auto& to = removed_to_kept.at_b;
   quadrics[to[0]] += quadrics[from[0]];

@@ -11,7 +11,7 @@
 
 namespace orbis::lod {
 
-// interior: one wedge all around. seam: two seam edges end here. fixed: where seams meet or end.
+// interior: one wedge all around. seam: two seam edges end here, or the surface does. fixed: where seams meet or end.
 enum class PointKind : std::uint8_t { interior, seam, fixed };
 
 struct Wedge {
@@ -33,10 +33,11 @@ struct Point {
   bool is_alive = true;
 };
 
-// The two wedges of an edge (a, b) on each of its two sides.
+// The wedges of an edge (a, b) on each of its two sides. Where the surface ends there is one side, named twice.
 struct EdgeSides {
   std::array<std::uint32_t, 2> at_a{}, at_b{}, triangle{};
-  [[nodiscard]] bool is_seam() const { return at_a[0] != at_a[1] || at_b[0] != at_b[1]; }
+  [[nodiscard]] bool is_border() const { return triangle[0] == triangle[1]; }
+  [[nodiscard]] bool is_seam() const { return is_border() || at_a[0] != at_a[1] || at_b[0] != at_b[1]; }
 };
 
 // Corner 3 t + k is corner k of triangle t.
@@ -60,13 +61,13 @@ public:
     for (std::uint32_t c = points[point].first_corner; c != none; c = next_corner_[c])
       if (is_alive[c / 3]) visit(c);
   }
-  // The wedges on both sides of an edge; nothing where it does not have exactly two triangles.
+  // The wedges on both sides of an edge; nothing where it has more than two triangles, or none.
   [[nodiscard]] std::optional<EdgeSides> sides_of(std::uint32_t a, std::uint32_t b) const;
   // The points around a point, each once, in the order in which the triangles were listed.
   void neighbours_of(std::uint32_t point, std::vector<std::uint32_t>& out) const;
-  // Link condition of Dey et al., Topology preserving edge contraction (1999), on a closed surface: the ends have
-  // exactly two neighbours in common, and more than four points remain connected.
-  [[nodiscard]] bool link_condition(std::uint32_t a, std::uint32_t b);
+  // Link condition of Dey et al., Topology preserving edge contraction (1999): the ends have no neighbour in common but
+  // those of the edge's triangles; and more than the edge's own triangles, or two of a tetrahedron, would be left.
+  [[nodiscard]] bool link_condition(std::uint32_t a, std::uint32_t b, const EdgeSides& sides);
 
   // Removes the triangles of the edge and hands the others around `removed` to `kept`; wedges of `removed` become those
   // of `kept` as `sides` pairs them, their quadrics are added.

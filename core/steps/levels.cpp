@@ -1,0 +1,136 @@
+#include "core/steps/levels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/lod/distance.h"
+#include "core/lod/full_surface.h"
+
+namespace orbis {
+namespace {
+
+std::vector<lod::Target> targets_of(const Options& options, const Surface& surface) {
+  std::vector<lod::Target> targets;
+  std::uint64_t delivered = 0;
+  for (const Component& c : surface.components) delivered += c.input_triangles;
+  for (const LodTarget& target : options.lods) {
+    if (target.kind == LodTarget::Kind::deviation) {
+      targets.push_back({0, target.value / 100});
+    } else {
+      const double count =
+          target.kind == LodTarget::Kind::ratio ? target.value * static_cast<double>(delivered) : target.value;
+      // Four triangles are the fewest that close a surface.
+      targets.push_back({std::max<std::uint64_t>(4, static_cast<std::uint64_t>(count)), 0});
+    }
+  }
+  return targets;
+}
+
+// The part of the screen's height at which a texel that is off by the level's mean deviation is off by half a pixel on
+// a screen of 1080 rows; 1 where it is less all over the screen.
+double coverage_of(double deviation) {
+  constexpr double rows = 1080, pixels = 0.5;
+  return deviation > 0 ? std::min(1.0, pixels / (rows * deviation)) : 1.0;
+}
+
+void measure(const lod::Ruler& ruler, const lod::Level& level, Report::Level& out) {
+  const lod::Distances distances = ruler.distances(level);
+  const lod::TextureDeviation deviation = ruler.texture_deviation(level);
+  out.triangles = level.mesh.triangles.size();
+  out.mean_distance = 100 * distances.to_full;
+  out.mean_distance_from_full = 100 * distances.from_full;
+  out.hausdorff_distance = 100 * distances.hausdorff;
+  out.texture_deviation = 100 * deviation.mean;
+  out.texture_deviation_max = 100 * deviation.largest;
+  out.outside = 100 * deviation.outside;
+}
+
+// What a target cost, in words.
+void note_concessions(const lod::Concessions& c, const std::string& where, Report& report) {
+  const auto note = [&](const char* code, const std::string& message) {
+    report.notes.push_back({code, message, where});
+  };
+  if (c.turned_normals)
+    note("lod-turned-normals", "some triangles were allowed to turn by more than 80 degrees at once");
+  if (c.outline > 0)
+    note("lod-outline", "seams had to leave the outlines of their charts: along them the level may show the gutter");
+  if (c.lost_components > 0)
+    note("lod-lost-components", std::to_string(c.lost_components) +
+                                    " components, the smallest, had to be left out to reach the number of triangles");
+  if (c.is_short)
+    note("lod-short", "no edge was left that could be collapsed: the level has more triangles than asked for");
+}
+
+// The positions that were fitted take the place of those on the full surface.
+void place(const lod::Level& level, Delivery& delivery) {
+  for (std::size_t p = 0; p < delivery.primitives.size(); ++p) {
+    for (asset::Attribute& attribute : delivery.primitives[p].attributes) {
+      if (attribute.name != "POSITION") continue;
+      attribute.type = asset::ComponentType::f32;
+      attribute.normalized = false;
+      attribute.data.assign(delivery.sources[p].size() * sizeof(Vec3f), std::byte{});
+    }
+  }
+  const auto position_of = [](asset::NewPrimitive& primitive) -> asset::Attribute& {
+    return *std::find_if(primitive.attributes.begin(), primitive.attributes.end(),
+                         [](const asset::Attribute& a) { return a.name == "POSITION"; });
+  };
+  for (std::size_t v = 0; v < level.positions.size(); ++v) {
+    const OutputVertex o = delivery.of_cut_vertex[v];
+    asset::Attribute& position = position_of(delivery.primitives[o.primitive]);
+    const Vec3f& at = level.positions[v];
+    position.set(o.vertex, 0, double{at.x});
+    position.set(o.vertex, 1, double{at.y});
+    position.set(o.vertex, 2, double{at.z});
+  }
+}
+
+std::string name_of_target(const Options& options, std::size_t i) {
+  Options one;
+  one.lods = {options.lods[i]};
+  return get_option(one, "lods");
+}
+
+} // namespace
+
+std::vector<DetailLevel> make_levels(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut,
+                                     double gutter, Progress& progress, Report& report) {
+  std::vector<DetailLevel> out;
+  if (report.options.lods.empty()) return out;
+  const lod::FullSurface full(surface.mesh, surface.primitive_of, cut);
+  std::vector<lod::Level> levels = lod::simplify(full, targets_of(report.options, surface), gutter, progress);
+
+  mesh::ThreadPool threads(report.options.threads);
+  const lod::Ruler ruler(full, threads);
+  double coverage = 1;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    progress.check();
+    Report::Level& facts = report.levels.emplace_back();
+    facts.target = name_of_target(report.options, i);
+    measure(ruler, levels[i], facts);
+    facts.screen_coverage = coverage = std::min(coverage, coverage_of(facts.texture_deviation / 100));
+    const lod::Concessions& c = levels[i].concessions;
+    facts.turned_normals = c.turned_normals;
+    facts.outline_texels = c.outline * report.atlas.width;
+    facts.lost_components = c.lost_components;
+    facts.reached = !c.is_short;
+    note_concessions(c, "/levels/" + std::to_string(i), report);
+
+    DetailLevel& level = out.emplace_back(std::move(levels[i]), Delivery{});
+    level.delivery = make_delivery(asset, surface, level.level.mesh);
+    place(level.level, level.delivery);
+    for (const auto& sources : level.delivery.sources) facts.vertices += sources.size();
+  }
+  progress.report(Stage::levels, cut.triangles.size(), cut.triangles.size());
+  return out;
+}
+
+std::vector<asset::NewLevel> in_asset(std::span<const DetailLevel> levels, const Report& report) {
+  std::vector<asset::NewLevel> out;
+  for (std::size_t i = 0; i < levels.size(); ++i)
+    out.push_back({levels[i].delivery.primitives, report.levels[i].screen_coverage});
+  return out;
+}
+
+} // namespace orbis
