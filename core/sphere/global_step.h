@@ -13,8 +13,8 @@
 
 namespace orbis::sphere {
 
-// The finest level: every vertex and every triangle is live.
-struct FinestLevel {
+// A level of detail, all of it.
+struct WholeLevel {
   const TriangleEnergy& energy;
   std::span<const mesh::Triangle> triangles;
   const StarTable& stars;
@@ -23,23 +23,29 @@ struct FinestLevel {
 
 struct StepOutcome {
   double gain = 0;   // part of the energy
-  double length = 0; // part of the Newton step that was taken: 1, 1/2, 1/4, …; 0 where none helped
+  double length = 0; // part of the direction that was taken: 1, 1/2, 1/4, … or 2, 4; 0 where none helped
+  double before = 0; // the energy
 };
+
+// Goes along a direction: the whole way, or half of it and so on, until the energy falls, which also says that no
+// triangle folds; and on, twice as far, while it falls further. Where no step helps the points stay.
+//   direction  one per vertex, in the frames of the points
+//   trial      scratch
+StepOutcome step_along(const WholeLevel& level, std::span<const Tangent> direction, std::span<Vec3d> points,
+                       std::vector<Vec3d>& trial, mesh::ThreadPool& pool);
 
 class GlobalStep {
 public:
-  GlobalStep(const FinestLevel& level, HierarchicalBasis& basis, mesh::ThreadPool& pool);
+  GlobalStep(const WholeLevel& level, HierarchicalBasis& basis, mesh::ThreadPool& pool);
 
   // Solves for the Newton direction by preconditioned conjugate gradients (at most `most_iterations`; ends where the
-  // residual has fallen to a twentieth in the preconditioner's norm), then goes along it: the whole way, or half of it
-  // and so on, until the energy falls, which also says that no triangle folds. Where no step helps the points stay.
+  // residual has fallen to a twentieth in the preconditioner's norm), then goes along it (step_along).
   StepOutcome take(std::uint32_t most_iterations, std::span<Vec3d> points);
 
 private:
   void solve(std::uint32_t most_iterations);
-  [[nodiscard]] double energy(std::span<const Vec3d> points);
 
-  FinestLevel level_;
+  WholeLevel level_;
   HierarchicalBasis& basis_;
   mesh::ThreadPool& pool_;
   TangentHessian hessian_;

@@ -6,8 +6,11 @@
 // A vertex whose step gains little falls asleep until a neighbour's move wakes it, so the work goes where the map is
 // bad. Low frequencies move on coarse levels, where a sweep costs little.
 //
-// What is left then is the difference between coarse and fine geometry, which is smooth: a few Newton steps of all
-// vertices together take most of it away (global_step.h).
+// Local steps hardly move low frequencies: a limb that got too little of the sphere keeps too little. So on levels each
+// about twice as large as the last, Newton's method moves all vertices together, with a sparse factorisation
+// (newton_level.h), until little is left to gain. Most surfaces need that on small levels only, where it costs little;
+// those with long limbs on all. On the finest level Newton steps with conjugate gradients (global_step.h) take away
+// what is left.
 //
 // Everything is done in an order that does not depend on the number of threads.
 #include <algorithm>
@@ -25,6 +28,7 @@
 #include "core/sphere/insertion.h"
 #include "core/sphere/level_mesh.h"
 #include "core/sphere/moebius_centring.h"
+#include "core/sphere/newton_level.h"
 #include "core/sphere/relaxation.h"
 
 namespace orbis::sphere {
@@ -47,10 +51,24 @@ constexpr double worthwhile_gain = 0.01, smallest_gain = 1e-4, small_level = 2'0
 constexpr std::uint32_t final_sweeps = 200;
 constexpr double final_gain = 0.003;
 
-// Newton steps of all vertices together on the finest level, at most so many, of so many iterations of the linear
-// solver each. They end when one gains less than `enough`. After each the vertices that it brought close to a fold move
-// by themselves.
+// Levels that Newton's method with a factorisation relaxes are at least so large, and so many times as large as the
+// last one; where the first step on a level promised more than `hard`, the next is not so much larger, and the finest
+// is one of them.
+constexpr std::size_t smallest_newton_level = 64;
+constexpr double level_growth = 2, hard_level_growth = 1.5;
+constexpr double hard = 5e-3;
+// Sweeps after a step, for the vertices that it brought close to a fold.
+constexpr std::uint32_t mending_sweeps = 20;
+constexpr double mending_gain = 1e-3;
+
 struct Effort {
+  // With a factorisation: levels up to so many vertices, and up to so many where the last such level was hard; at most
+  // so many steps a level, ending where a step promises less than this part of the energy.
+  std::size_t usual_level, hard_level;
+  int newton_steps;
+  double promise;
+  // With conjugate gradients, on the finest level: at most so many steps, of so many iterations each, ending where one
+  // gains less than `enough`.
   int steps;
   std::uint32_t iterations;
   double enough;
@@ -59,13 +77,13 @@ struct Effort {
 constexpr Effort effort_of(Quality quality) {
   switch (quality) {
   case Quality::draft:
-    return {0, 0, 0};
+    return {1'000, 4'000, 1, 1e-3, 0, 0, 0};
   case Quality::standard:
-    return {6, 20, 1e-3};
+    return {4'000, 130'000, 4, 1e-3, 6, 20, 1e-3};
   case Quality::high:
     break;
   }
-  return {60, 60, 2e-4};
+  return {16'000, 250'000, 20, 1e-4, 60, 60, 2e-4};
 }
 
 class Refinement {
@@ -86,6 +104,11 @@ private:
   // Sweeps over what is active, all at first. Returns whether no step is worthwhile any more.
   bool relax(std::uint32_t sweeps, double worthwhile, std::span<Vec3d> points, Progress& progress);
   void centre(std::span<Vec3d> points);
+  [[nodiscard]] bool wants_newton(std::size_t vertices) const;
+  void relax_by_newton(std::span<Vec3d> points, Progress& progress);
+  [[nodiscard]] WholeLevel whole_level() const {
+    return {energy_, level_.triangles(), level_.stars(), level_.references()};
+  }
 
   TriangleEnergy energy_;
   Hierarchy hierarchy_;
@@ -98,6 +121,8 @@ private:
   SweepOrder order_;
   Active active_;
   HierarchicalBasis basis_;
+  std::size_t last_newton_level_ = 0; // its vertices
+  double promise_ = 1;                // of the first step there, or half of what it was before
 };
 
 Refinement::Refinement(const TriangleEnergy& energy, Hierarchy hierarchy, std::vector<Vec3d> positions,
@@ -161,6 +186,28 @@ void Refinement::centre(std::span<Vec3d> points) {
   centre_by_moebius(level_.triangles(), level_.references(), points, pool_);
 }
 
+bool Refinement::wants_newton(std::size_t vertices) const {
+  const bool was_hard = promise_ > hard, finest = vertices == points_.size();
+  const double growth = !was_hard ? level_growth : finest ? 1 : hard_level_growth;
+  return vertices >= smallest_newton_level && vertices <= (was_hard ? effort_.hard_level : effort_.usual_level) &&
+         static_cast<double>(vertices) >= growth * static_cast<double>(last_newton_level_);
+}
+
+void Refinement::relax_by_newton(std::span<Vec3d> points, Progress& progress) {
+  const WholeLevel level = whole_level();
+  NewtonLevel newton(level, pool_);
+  // The finest level has no other after it, and the shapes of its triangles are not rounded off.
+  const int most_steps = points.size() == points_.size() ? 2 * effort_.newton_steps : effort_.newton_steps;
+  for (int i = 0; i < most_steps; ++i) {
+    progress.check();
+    const double promise = newton.take(points);
+    if (i == 0) promise_ = std::max(promise, promise_ / 2);
+    relax(mending_sweeps, mending_gain, points, progress);
+    if (promise < effort_.promise) break;
+  }
+  last_newton_level_ = points.size();
+}
+
 void Refinement::relax_level(std::uint32_t sweeps, double worthwhile, Progress& progress) {
   const std::span<const Index> vertices = level_.vertices();
   level_points_.resize(vertices.size());
@@ -168,6 +215,7 @@ void Refinement::relax_level(std::uint32_t sweeps, double worthwhile, Progress& 
     for (std::size_t i = begin; i < end; ++i) level_points_[i] = points_[vertices[i]];
   });
   relax(sweeps, worthwhile, level_points_, progress);
+  if (wants_newton(vertices.size())) relax_by_newton(level_points_, progress);
   centre(level_points_);
   pool_.for_blocks(vertices.size(), copy_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) points_[vertices[i]] = level_points_[i];
@@ -217,7 +265,7 @@ void Refinement::optimise(Progress& progress) {
   }
   // From here on the level is the whole mesh: its numbers are the hierarchy's.
   converged = relax(final_sweeps, final_gain, points_, progress);
-  GlobalStep global({energy_, level_.triangles(), level_.stars(), level_.references()}, basis_, pool_);
+  GlobalStep global(whole_level(), basis_, pool_);
   for (int i = 0; i < effort_.steps && hierarchy_.rounds() > 0; ++i) {
     progress.report(Stage::optimise, static_cast<std::uint64_t>(i) + 1, total);
     progress.check();
@@ -225,7 +273,7 @@ void Refinement::optimise(Progress& progress) {
     centre(points_);
     const bool settled = relax(final_sweeps, final_gain, points_, progress);
     // A step that a fold cut short gains little because of one place, which the relaxation has just mended.
-    const bool enough = step.gain < effort_.enough && (step.length == 0 || step.length == 1);
+    const bool enough = step.gain < effort_.enough && (step.length == 0 || step.length >= 1);
     converged = settled && enough;
     if (enough) break;
   }

@@ -96,9 +96,15 @@ Turn turn_to(const Plane& plane, const TangentFrame& frame) {
   return {dot(frame.x, plane.x), dot(frame.x, plane.y), dot(frame.y, plane.x), dot(frame.y, plane.y)};
 }
 
-// Adds the block of corners i and j, each in its vertex' frame.
-void add_block(const TrianglePart& part, std::size_t i, const Turn& ti, std::size_t j, const Turn& tj,
-               std::array<float, 4>& block) {
+using Block = TangentHessian::Block;
+
+void add(const std::array<double, 4>& sum, double share, Block& block) {
+  for (std::size_t e = 0; e < 4; ++e) block[e] += static_cast<float>(share * sum[e]);
+}
+
+// The block of corners i and j, each in its vertex' frame.
+std::array<double, 4> convex_block(const TrianglePart& part, std::size_t i, const Turn& ti, std::size_t j,
+                                   const Turn& tj) {
   std::array<double, 4> sum{};
   for (std::size_t k = 0; k < 4; ++k) {
     const double ix = ti.xx * part.wx[i][k] + ti.xy * part.wy[i][k], iy = ti.yx * part.wx[i][k] + ti.yy * part.wy[i][k];
@@ -108,14 +114,68 @@ void add_block(const TrianglePart& part, std::size_t i, const Turn& ti, std::siz
     sum[2] += iy * jx;
     sum[3] += iy * jy;
   }
-  for (std::size_t e = 0; e < 4; ++e) block[e] += static_cast<float>(sum[e]);
+  return sum;
 }
+
+// A triangle (p_0, p_1, p_2) as the exact Hessian's row of corner 0 sees it.
+template <class Energy> class ExactRow {
+public:
+  ExactRow(const Energy& energy, const std::array<Vec3d, 3>& p, const std::array<const TangentFrame*, 3>& frame,
+           const std::array<double, 3>& cot, double area)
+      : p_(p), frame_(frame), cot_(cot) {
+    V_ = dot(p[0], cross(p[1] - p[0], p[2] - p[0]));
+    for (std::size_t k = 0; k < 3; ++k) D_ += 0.5 * cot[k] * squared_norm(p[(k + 1) % 3] - p[(k + 2) % 3]);
+    h_ = energy.jet(V_, area);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+      // From differences, but for parts along p_i.
+      const Vec3d dD = cot[k] * (p[i] - p[j]) + cot[j] * (p[i] - p[k]), dV = cross(p[j], p[k]);
+      D1_[i] = {dot(dD, frame[i]->x), dot(dD, frame[i]->y)};
+      V1_[i] = {dot(dV, frame[i]->x), dot(dV, frame[i]->y)};
+    }
+  }
+
+  // The block of corners 0 and j.
+  [[nodiscard]] std::array<double, 4> block(std::size_t j) const {
+    const Tangent &d = D1_[0], &v = V1_[0], &dj = D1_[j], &vj = V1_[j];
+    const double first = h_.first, second = D_ * h_.second;
+    std::array<double, 4> out{first * (d.x * vj.x + v.x * dj.x) + second * v.x * vj.x,
+                              first * (d.x * vj.y + v.x * dj.y) + second * v.x * vj.y,
+                              first * (d.y * vj.x + v.y * dj.x) + second * v.y * vj.x,
+                              first * (d.y * vj.y + v.y * dj.y) + second * v.y * vj.y};
+    if (j == 0) {
+      const double diagonal = h_.value * (cot_[2] * dot(p_[0], p_[1]) + cot_[1] * dot(p_[0], p_[2])) - D_ * first * V_;
+      out[0] += diagonal;
+      out[3] += diagonal;
+      return out;
+    }
+    const std::size_t k = 3 - j;                                     // neither 0 nor j
+    const Vec3d other = (j == 1 ? D_ * first : -D_ * first) * p_[k]; // det(u_0, u_j, p_k) for j = 1, its opposite for 2
+    const auto mixed = [&](const Vec3d& a, const Vec3d& b) {
+      return -h_.value * cot_[k] * dot(a, b) + dot(cross(a, b), other);
+    };
+    const TangentFrame &f = *frame_[0], &g = *frame_[j];
+    out[0] += mixed(f.x, g.x);
+    out[1] += mixed(f.x, g.y);
+    out[2] += mixed(f.y, g.x);
+    out[3] += mixed(f.y, g.y);
+    return out;
+  }
+
+private:
+  const std::array<Vec3d, 3>& p_;
+  const std::array<const TangentFrame*, 3>& frame_;
+  const std::array<double, 3>& cot_;
+  double V_ = 0, D_ = 0;
+  Jet h_{};
+  std::array<Tangent, 3> D1_, V1_;
+};
 
 } // namespace
 
 template <class Energy>
 void TangentHessian::build_row(const Energy& energy, mesh::Index v, std::span<const Reference> references,
-                               std::span<const Vec3d> points) {
+                               std::span<const Vec3d> points, double exact_share) {
   const std::span<const StarCorner> star = (*stars_)[v];
   const std::span<Block> row = std::span(neighbour_).subspan(stars_->first(v), star.size());
   const TangentFrame frame(points[v]);
@@ -125,27 +185,36 @@ void TangentHessian::build_row(const Energy& energy, mesh::Index v, std::span<co
     const StarCorner& c = star[k];
     const Reference& reference = references[c.triangle()];
     const std::size_t at = c.place(), next = k + 1 == star.size() ? 0 : k + 1;
-    const mesh::Index previous = star[next].next;
-    const TrianglePart part =
-        part_of(energy, {points[v], points[c.next], points[previous]},
-                {double{reference.cot[at]}, double{reference.cot[(at + 1) % 3]}, double{reference.cot[(at + 2) % 3]}},
-                double{reference.area});
+    const std::array<Vec3d, 3> p{points[v], points[c.next], points[star[next].next]};
+    const TangentFrame frame_1(p[1]), frame_2(p[2]);
+    const std::array<double, 3> cot{double{reference.cot[at]}, double{reference.cot[(at + 1) % 3]},
+                                    double{reference.cot[(at + 2) % 3]}};
+    const double area{reference.area};
+    const std::array<Block*, 3> blocks{&own_[v], &row[k], &row[next]};
+    const TrianglePart part = part_of(energy, p, cot, area);
+    const std::array<const TangentFrame*, 3> frames{&frame, &frame_1, &frame_2};
     const Turn here = turn_to(part.plane, frame);
-    add_block(part, 0, here, 0, here, own_[v]);
-    add_block(part, 0, here, 1, turn_to(part.plane, TangentFrame(points[c.next])), row[k]);
-    add_block(part, 0, here, 2, turn_to(part.plane, TangentFrame(points[previous])), row[next]);
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Turn there = j == 0 ? here : turn_to(part.plane, *frames[j]);
+      add(convex_block(part, 0, here, j, there), 1 - exact_share, *blocks[j]);
+    }
+    if (exact_share == 0) continue;
+    const ExactRow exact(energy, p, frames, cot, area);
+    for (std::size_t j = 0; j < 3; ++j) add(exact.block(j), exact_share, *blocks[j]);
   }
 }
 
 void TangentHessian::build(const TriangleEnergy& energy, const StarTable& stars, std::span<const Reference> references,
-                           std::span<const Vec3d> points, mesh::ThreadPool& pool) {
+                           std::span<const Vec3d> points, double exact_share, mesh::ThreadPool& pool) {
   stars_ = &stars;
   own_.resize(points.size());
   neighbour_.resize(stars.corners());
   std::visit(
       [&](const auto& e) {
         pool.for_blocks(points.size(), grain, [&](std::size_t begin, std::size_t end) {
-          for (std::size_t v = begin; v < end; ++v) build_row(e, static_cast<mesh::Index>(v), references, points);
+          for (std::size_t v = begin; v < end; ++v) {
+            build_row(e, static_cast<mesh::Index>(v), references, points, exact_share);
+          }
         });
       },
       energy);

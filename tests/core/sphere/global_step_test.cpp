@@ -1,11 +1,13 @@
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <optional>
 #include <random>
 
 #include "core/mesh/unit_positions.h"
 #include "core/sphere/global_step.h"
+#include "core/sphere/newton_level.h"
 #include "core/sphere/relaxation.h"
 #include "support/shapes.h"
 
@@ -36,7 +38,7 @@ struct Scene {
     basis->prepare(points);
   }
 
-  [[nodiscard]] sphere::FinestLevel level() const { return {energy_of, mesh.triangles, stars, references}; }
+  [[nodiscard]] sphere::WholeLevel level() const { return {energy_of, mesh.triangles, stars, references}; }
   [[nodiscard]] double energy() { return sphere::total_energy(energy_of, mesh.triangles, references, points, pool); }
 
   mesh::ThreadPool pool;
@@ -91,7 +93,7 @@ TEST_CASE("the Hessian is symmetric and positive semi-definite") {
   Scene scene(ellipsoid(4));
   const std::size_t n = scene.points.size();
   sphere::TangentHessian hessian;
-  hessian.build(scene.energy_of, scene.stars, scene.references, scene.points, scene.pool);
+  hessian.build(scene.energy_of, scene.stars, scene.references, scene.points, 0, scene.pool);
   for (std::uint32_t seed = 0; seed < 10; ++seed) {
     const std::vector<Tangent> a = random_field(n, seed), b = random_field(n, seed + 100);
     std::vector<Tangent> ha(n), hb(n);
@@ -107,7 +109,7 @@ TEST_CASE("where nothing is indefinite, the Hessian is the derivative of the gra
   Scene scene(shapes::sphere(5));
   const std::size_t n = scene.points.size();
   sphere::TangentHessian hessian;
-  hessian.build(scene.energy_of, scene.stars, scene.references, scene.points, scene.pool);
+  hessian.build(scene.energy_of, scene.stars, scene.references, scene.points, 0, scene.pool);
   // A smooth field, small against the triangles.
   std::vector<Tangent> field(n), image(n), before(n), after(n);
   const auto moved = [&](double t) {
@@ -131,6 +133,59 @@ TEST_CASE("where nothing is indefinite, the Hessian is the derivative of the gra
   }
   // The bend of the sphere, which the Hessian leaves out, and the frames' turn account for the rest.
   CHECK(inner(field, image) == doctest::Approx(along).epsilon(0.25));
+}
+
+TEST_CASE("the exact Hessian is the derivative of the gradient") {
+  for (const sphere::TriangleEnergy& energy : std::array<sphere::TriangleEnergy, 3>{
+           sphere::SymmetricDirichlet{}, sphere::Stretch{}, sphere::AreaWeighted{0.3}}) {
+    CAPTURE(energy.index());
+    Scene scene(ellipsoid(4), 1, energy);
+    const std::size_t n = scene.points.size();
+    const std::vector<Tangent> a = random_field(n, 1), b = random_field(n, 2);
+    sphere::TangentHessian hessian;
+    hessian.build(energy, scene.stars, scene.references, scene.points, 1, scene.pool);
+    std::vector<Tangent> image(n);
+    hessian.apply(a, image, scene.pool);
+    const auto energy_at = [&](double s, double t) {
+      std::vector<Vec3d> moved;
+      for (std::size_t v = 0; v < n; ++v) {
+        const sphere::TangentFrame f(scene.points[v]);
+        moved.push_back(
+            normalized(scene.points[v] + (s * a[v].x + t * b[v].x) * f.x + (s * a[v].y + t * b[v].y) * f.y));
+      }
+      return sphere::total_energy(energy, scene.mesh.triangles, scene.references, moved, scene.pool);
+    };
+    const double h = 2e-5;
+    const double mixed = (energy_at(h, h) - energy_at(h, -h) - energy_at(-h, h) + energy_at(-h, -h)) / (4 * h * h);
+    const double straight = (energy_at(h, 0) - 2 * energy_at(0, 0) + energy_at(-h, 0)) / (h * h);
+    CHECK(inner(image, a) == doctest::Approx(straight).epsilon(1e-3));
+    CHECK(std::abs(inner(image, b) - mixed) < 1e-3 * std::abs(straight));
+  }
+}
+
+TEST_CASE("Newton's method converges, its steps never raise the energy, and its promises are kept") {
+  for (const sphere::TriangleEnergy& energy : std::array<sphere::TriangleEnergy, 3>{
+           sphere::SymmetricDirichlet{}, sphere::Stretch{}, sphere::AreaWeighted{0.3}}) {
+    CAPTURE(energy.index());
+    Scene scene(ellipsoid(4), 1, energy);
+    const sphere::WholeLevel level = scene.level();
+    sphere::NewtonLevel newton(level, scene.pool);
+    double value = scene.energy(), promise = 1;
+    for (int i = 0; i < 60 && promise > 1e-7; ++i) {
+      promise = newton.take(scene.points);
+      CHECK(promise >= 0);
+      const double now = scene.energy();
+      CHECK(now <= value);
+      value = now;
+    }
+    CHECK(promise <= 1e-7);
+    // At the minimum nothing is left for local steps either.
+    sphere::SweepOrder order;
+    order.build(scene.stars, scene.pool);
+    sphere::Active active(scene.points.size(), 1);
+    sphere::relax_active({scene.stars, scene.references, order}, energy, 1e-9, scene.points, active, scene.pool);
+    CHECK(scene.energy() > value * (1 - 1e-5));
+  }
 }
 
 TEST_CASE("a step lowers the energy, folds nothing and comes to an end") {

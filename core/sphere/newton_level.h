@@ -1,0 +1,41 @@
+// Newton's method on one level of detail, with a sparse Cholesky factorisation: it takes the low frequencies all the
+// way to their minimum, on levels where that costs little. Local steps move them by a vertex' width a sweep, and limbs
+// that are too small on a coarse level stay so on every finer one.
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <span>
+#include <vector>
+
+#include "core/mesh/thread_pool.h"
+#include "core/sphere/global_step.h"
+
+namespace orbis::sphere {
+
+class NewtonLevel {
+public:
+  // level: all of it is kept by reference.
+  NewtonLevel(const WholeLevel& level, mesh::ThreadPool& pool);
+
+  // One step: solves for the direction with as much of the exact Hessian as leaves it positive definite, and goes along
+  // it as step_along (global_step.h) does. Returns the part of the energy that the quadratic model had promised: an
+  // estimate of what there is to gain, whatever the step's length.
+  double take(std::span<Vec3d> points);
+
+private:
+  [[nodiscard]] bool factorise(std::span<const Vec3d> points);
+  void assemble();
+
+  const WholeLevel& level_;
+  mesh::ThreadPool& pool_;
+  TangentHessian hessian_;
+  double exact_share_;
+  std::vector<double> mass_;           // by vertex: a third of the reference area of its triangles
+  Eigen::SparseMatrix<double> matrix_; // lower triangle
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
+  bool analysed_ = false;
+  std::vector<Tangent> gradient_, direction_;
+  std::vector<Vec3d> trial_;
+};
+
+} // namespace orbis::sphere
