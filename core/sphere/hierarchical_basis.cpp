@@ -31,9 +31,9 @@ Symmetric projected(const std::array<float, 6>& m, const TangentFrame& frame) {
   return {dot(frame.x, mx), dot(frame.x, my), dot(frame.y, my)};
 }
 
-std::array<double, 3> inverted(const Symmetric& m) {
+std::array<float, 3> inverted(const Symmetric& m) {
   const double det = std::max(m.xx * m.yy - m.xy * m.xy, 1e-9 * m.xx * m.yy);
-  return {m.yy / det, -m.xy / det, m.xx / det};
+  return {static_cast<float>(m.yy / det), static_cast<float>(-m.xy / det), static_cast<float>(m.xx / det)};
 }
 
 } // namespace
@@ -74,14 +74,15 @@ void HierarchicalBasis::weigh_ring(std::size_t removal, std::span<const Vec3d> p
 
 void HierarchicalBasis::prepare(std::span<const Vec3d> points) {
   const std::size_t n = points.size();
-  frames_.resize(n, TangentFrame({0, 0, 1}));
+  frames_.resize(n);
   inverse_.resize(n);
   field_.resize(n);
   weights_.resize(hierarchy_.ring_vertices.size());
   pool_.for_blocks(n, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      frames_[v] = TangentFrame(points[v]);
-      inverse_[v] = inverted(projected(stiffness_[v], frames_[v]));
+      const TangentFrame frame(points[v]);
+      frames_[v] = {Vec3f(frame.x), Vec3f(frame.y)};
+      inverse_[v] = inverted(projected(stiffness_[v], frame));
     }
   });
   pool_.for_blocks(hierarchy_.removed.size(), grain, [&](std::size_t begin, std::size_t end) {
@@ -95,35 +96,45 @@ void HierarchicalBasis::apply(std::span<const Tangent> in, std::span<Tangent> ou
       for (std::size_t v = begin; v < end; ++v) body(v);
     });
   };
-  each([&](std::size_t v) { field_[v] = in[v].x * frames_[v].x + in[v].y * frames_[v].y; });
-  // S^T, from fine to coarse: what a vertex bears is handed to its ring. Rings share vertices, so this runs in one
-  // thread.
-  for (std::size_t i = 0; i < hierarchy_.removed.size(); ++i) {
-    const std::span<const mesh::Index> ring = hierarchy_.ring(i);
-    const float* weights = weights_.data() + hierarchy_.ring_first[i];
-    const Vec3d borne = field_[hierarchy_.removed[i]];
-    for (std::size_t k = 0; k < ring.size(); ++k) field_[ring[k]] += double{weights[k]} * borne;
-  }
   each([&](std::size_t v) {
-    const TangentFrame& f = frames_[v];
-    const std::array<double, 3>& m = inverse_[v];
-    const double x = dot(field_[v], f.x), y = dot(field_[v], f.y);
+    field_[v] = static_cast<float>(in[v].x) * frames_[v].x + static_cast<float>(in[v].y) * frames_[v].y;
+  });
+  for (std::size_t round = 0; round < hierarchy_.rounds(); ++round) hand_to_rings(round);
+  each([&](std::size_t v) {
+    const Frame& f = frames_[v];
+    const std::array<float, 3>& m = inverse_[v];
+    const float x = dot(field_[v], f.x), y = dot(field_[v], f.y);
     field_[v] = (m[0] * x + m[1] * y) * f.x + (m[1] * x + m[2] * y) * f.y;
   });
-  // S, from coarse to fine, round by round: within a round nobody is in another's ring.
-  for (std::size_t round = hierarchy_.rounds(); round-- > 0;) {
-    const std::size_t first = hierarchy_.round_first[round];
-    pool_.for_blocks(hierarchy_.round_first[round + 1] - first, grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = first + begin; i < first + end; ++i) {
-        const std::span<const mesh::Index> ring = hierarchy_.ring(i);
-        const float* weights = weights_.data() + hierarchy_.ring_first[i];
-        Vec3d carried{};
-        for (std::size_t k = 0; k < ring.size(); ++k) carried += double{weights[k]} * field_[ring[k]];
-        field_[hierarchy_.removed[i]] += carried;
-      }
-    });
-  }
-  each([&](std::size_t v) { out[v] = {dot(field_[v], frames_[v].x), dot(field_[v], frames_[v].y)}; });
+  for (std::size_t round = hierarchy_.rounds(); round-- > 0;) carry_by_rings(round);
+  each([&](std::size_t v) { out[v] = {double{dot(field_[v], frames_[v].x)}, double{dot(field_[v], frames_[v].y)}}; });
+}
+
+// S^T, from fine to coarse: what a vertex bears is handed to its ring. Rings of one block share vertices.
+void HierarchicalBasis::hand_to_rings(std::size_t round) {
+  const std::size_t first = hierarchy_.round_block[round];
+  pool_.for_blocks(hierarchy_.round_block[round + 1] - first, 1, [&](std::size_t block, std::size_t) {
+    for (std::size_t i = hierarchy_.block_first[first + block]; i < hierarchy_.block_first[first + block + 1]; ++i) {
+      const std::span<const mesh::Index> ring = hierarchy_.ring(i);
+      const float* weights = weights_.data() + hierarchy_.ring_first[i];
+      const Vec3f borne = field_[hierarchy_.removed[i]];
+      for (std::size_t k = 0; k < ring.size(); ++k) field_[ring[k]] += weights[k] * borne;
+    }
+  });
+}
+
+// S, from coarse to fine: a vertex moves with its ring. Within a round nobody is in another's ring.
+void HierarchicalBasis::carry_by_rings(std::size_t round) {
+  const std::size_t first = hierarchy_.round_first[round];
+  pool_.for_blocks(hierarchy_.round_first[round + 1] - first, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = first + begin; i < first + end; ++i) {
+      const std::span<const mesh::Index> ring = hierarchy_.ring(i);
+      const float* weights = weights_.data() + hierarchy_.ring_first[i];
+      Vec3f carried{};
+      for (std::size_t k = 0; k < ring.size(); ++k) carried += weights[k] * field_[ring[k]];
+      field_[hierarchy_.removed[i]] += carried;
+    }
+  });
 }
 
 } // namespace orbis::sphere

@@ -41,14 +41,20 @@ public:
 
 private:
   void weigh_ring(std::size_t removal, std::span<const Vec3d> points);
+  void hand_to_rings(std::size_t round);
+  void carry_by_rings(std::size_t round);
 
   const Hierarchy& hierarchy_;
   mesh::ThreadPool& pool_;
   std::vector<std::array<float, 6>> stiffness_; // symmetric 3 x 3 in space, by vertex: xx xy xz yy yz zz
-  std::vector<std::array<double, 3>> inverse_;  // xx xy yy in the frame
-  std::vector<TangentFrame> frames_;
+  // All that follows is in floats: a preconditioner need not be exact, only the same every time.
+  struct Frame {
+    Vec3f x, y;
+  };
+  std::vector<std::array<float, 3>> inverse_; // xx xy yy in the frame
+  std::vector<Frame> frames_;
   std::vector<float> weights_; // parallel to hierarchy.ring_vertices; a ring's add up to 1
-  std::vector<Vec3d> field_;   // the vector being carried, in space
+  std::vector<Vec3f> field_;   // the vector being carried, in space
 };
 
 } // namespace orbis::sphere

@@ -75,7 +75,9 @@ Decimation::Decimation(const mesh::TriangleMesh& mesh, mesh::ThreadPool& pool)
   std::iota(slots_.begin(), slots_.end(), 0U);
   out_.triangles.resize(mesh.triangles.size());
   out_.ring_first.push_back(0);
+  out_.block_first.push_back(0);
   out_.round_first.push_back(0);
+  out_.round_block.push_back(0);
   out_.removed.reserve(mesh.positions.size());
   out_.ring_first.reserve(mesh.positions.size());
   out_.ring_vertices.reserve(mesh.triangles.size() * 3);
@@ -133,12 +135,14 @@ void Decimation::record_removals() {
     for (const Removal& r : block) entries += r.ring.size;
     at.push_back(at.back() + block.size());
     ring_at.push_back(ring_at.back() + entries);
+    if (!block.empty()) out_.block_first.push_back(static_cast<std::uint32_t>(at.back()));
   }
   out_.removed.resize(at.back());
   out_.ring_first.resize(at.back() + 1);
   out_.ring_vertices.resize(ring_at.back());
   out_.ring_slots.resize(ring_at.back());
   out_.round_first.push_back(static_cast<std::uint32_t>(at.back()));
+  out_.round_block.push_back(static_cast<std::uint32_t>(out_.block_first.size() - 1));
   dead_.assign(triangles_.size(), 0);
   pool_.for_blocks(removals_.size(), 1, [&](std::size_t block, std::size_t) {
     std::size_t i = at[block], entry = ring_at[block];

@@ -23,7 +23,8 @@ inline constexpr std::size_t most_ring_vertices = 16;
 // ring[k+1]), and slots 0 and d-1 are free.
 //
 // No two vertices of one round are neighbours, so its holes share no triangle: undoing a round is a set of independent
-// insertions, each a point in the kernel of its polygon.
+// insertions, each a point in the kernel of its polygon. The removals of a round come in blocks, and no ring shares a
+// vertex with a ring of another block.
 struct Hierarchy {
   std::array<mesh::Index, 4> tetrahedron{}; // the four vertices that are left
   std::array<std::uint32_t, 4> tetrahedron_slots{};
@@ -33,7 +34,9 @@ struct Hierarchy {
       ring_first; // removal -> its first entry in ring_vertices and ring_slots; one past the end too
   std::vector<mesh::Index> ring_vertices;
   std::vector<std::uint32_t> ring_slots;
+  std::vector<std::uint32_t> block_first; // block -> its first removal; one past the end too
   std::vector<std::uint32_t> round_first; // round -> its first removal; one past the end too
+  std::vector<std::uint32_t> round_block; // round -> its first block; one past the end too
 
   [[nodiscard]] std::span<const mesh::Index> ring(std::size_t i) const {
     return std::span(ring_vertices).subspan(ring_first[i], ring_first[i + 1] - ring_first[i]);
