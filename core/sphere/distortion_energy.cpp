@@ -8,12 +8,21 @@ namespace {
 constexpr int most_halvings = 6;
 constexpr double smallest_eigenvalue = 1e-3; // in units of the largest one
 
-struct Step {
-  double x, y;
-};
+// The largest t in (0, 1] with all V of the star positive at p + t s, to first order, and a tenth of the way left.
+double step_to_fold(std::span<const StarTerm> star, const Vec3d& p, const Vec3d& s) {
+  double t = 1;
+  for (const StarTerm& term : star) {
+    const Vec3d u = term.a - p, v = term.b - p;
+    const Vec3d uv = cross(u, v);
+    const double V = dot(p, uv), slope = dot(cross(p, v - u) + uv, s);
+    if (V + t * slope < 0.1 * V) t = std::min(t, -0.9 * V / slope);
+  }
+  return t;
+}
 
-// -H^-1 g with the eigenvalues of H replaced by their magnitudes, none below a part of the largest.
-Step descent_step(const Expansion& e) {
+} // namespace
+
+Descent descent_step(const Expansion& e) {
   const double mean = 0.5 * (e.hxx + e.hyy), half = 0.5 * (e.hxx - e.hyy);
   const double radius = std::sqrt(half * half + e.hxy * e.hxy);
   if (mean - radius > smallest_eigenvalue * (mean + radius)) {
@@ -42,25 +51,11 @@ Step descent_step(const Expansion& e) {
   return {-(along * ex - across * ey), -(along * ey + across * ex)};
 }
 
-// The largest t in (0, 1] with all V of the star positive at p + t s, to first order, and a tenth of the way left.
-double step_to_fold(std::span<const StarTerm> star, const Vec3d& p, const Vec3d& s) {
-  double t = 1;
-  for (const StarTerm& term : star) {
-    const Vec3d u = term.a - p, v = term.b - p;
-    const Vec3d uv = cross(u, v);
-    const double V = dot(p, uv), slope = dot(cross(p, v - u) + uv, s);
-    if (V + t * slope < 0.1 * V) t = std::min(t, -0.9 * V / slope);
-  }
-  return t;
-}
-
-} // namespace
-
 template <class Energy>
 Vec3d newton_step(const Energy& energy, std::span<const StarTerm> star, const Vec3d& p, double& gain) {
   const TangentFrame frame(p);
   const Expansion e = expand(energy, star, p, frame);
-  const Step step = descent_step(e);
+  const Descent step = descent_step(e);
   gain = 0;
   const Vec3d s = step.x * frame.x + step.y * frame.y;
   double t = step_to_fold(star, p, s);

@@ -111,6 +111,14 @@ Expansion expand(const Energy& energy, std::span<const StarTerm> star, const Vec
   return out;
 }
 
+// A step in the tangent plane.
+struct Descent {
+  double x = 0, y = 0;
+};
+
+// -H^-1 g with the eigenvalues of H replaced by their magnitudes, none below a part of the largest.
+[[nodiscard]] Descent descent_step(const Expansion& e);
+
 // A Newton step from p that lowers the star's energy: the Hessian's eigenvalues are made positive, the step is cut
 // short of the nearest fold and halved until E falls. Returns p itself where no step does. `gain` becomes the fraction
 // of E that was gained.

@@ -1,8 +1,10 @@
 #include "core/sphere/global_step.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/sphere/relaxation.h"
+#include "core/sphere/untangle.h"
 
 namespace orbis::sphere {
 namespace {
@@ -58,7 +60,7 @@ StepOutcome step_along(const WholeLevel& level, std::span<const Tangent> directi
         trial[v] = normalized(start[v] + (t * direction[v].x) * frame.x + (t * direction[v].y) * frame.y);
       }
     });
-    return energy(trial);
+    return untangle(level, start, trial, pool) ? energy(trial) : std::numeric_limits<double>::infinity();
   };
   StepOutcome out;
   double least = out.before = energy(points);

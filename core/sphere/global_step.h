@@ -10,16 +10,9 @@
 #include "core/sphere/reference.h"
 #include "core/sphere/star_table.h"
 #include "core/sphere/tangent_hessian.h"
+#include "core/sphere/whole_level.h"
 
 namespace orbis::sphere {
-
-// A level of detail, all of it.
-struct WholeLevel {
-  const TriangleEnergy& energy;
-  std::span<const mesh::Triangle> triangles;
-  const StarTable& stars;
-  std::span<const Reference> references;
-};
 
 struct StepOutcome {
   double gain = 0;   // part of the energy
