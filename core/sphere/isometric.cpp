@@ -79,7 +79,7 @@ constexpr Effort effort_of(Quality quality) {
   case Quality::draft:
     return {1'000, 4'000, 1, 1e-3, 0, 0, 0};
   case Quality::standard:
-    return {4'000, 130'000, 4, 1e-3, 6, 20, 1e-3};
+    return {2'000, 12'000, 2, 2e-3, 8, 8, 1e-2};
   case Quality::high:
     break;
   }
