@@ -1,6 +1,8 @@
 #include "core/sphere/untangle.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <variant>
 
 #include "core/sphere/distortion_energy.h"
@@ -78,7 +80,7 @@ public:
       }
       folded = folded_in_patch();
     }
-    if (!folded.empty()) return false;
+    if (!folded.empty() || !every_star_winds_once()) return false;
     double gain = 0;
     for (int sweep = 0; sweep < last_sweeps; ++sweep) {
       for (const Index v : patch_) {
@@ -128,6 +130,25 @@ private:
     std::ranges::sort(out);
     out.erase(std::ranges::unique(out).begin(), out.end());
     return out;
+  }
+
+  // Triangles without a fold can still lie around a vertex twice, and the map be a branched cover. Where every star
+  // winds once it is locally, and so, on a sphere, altogether one to one. Vertices beside the patch have new stars too.
+  [[nodiscard]] bool every_star_winds_once() const {
+    const auto winds_once = [&](Index v) {
+      const std::span<const StarCorner> star = level_.stars[v];
+      const Vec3d& p = points_[v];
+      double angle = 0; // in the tangent plane
+      for (std::size_t k = 0; k < star.size(); ++k) {
+        const Vec3d a = points_[star[k].next] - p, b = points_[previous_in(star, k)] - p;
+        angle += std::atan2(dot(p, cross(a, b)), dot(a, b) - dot(a, p) * dot(b, p));
+      }
+      return angle < 3 * std::numbers::pi; // it is a multiple of 2 pi
+    };
+    return std::ranges::all_of(patch_, [&](Index v) {
+      return winds_once(v) &&
+             std::ranges::all_of(level_.stars[v], [&](const StarCorner& c) { return winds_once(c.next); });
+    });
   }
 
   void grow(std::span<const std::uint32_t> folded, int rings) {

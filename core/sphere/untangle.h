@@ -15,7 +15,8 @@ namespace orbis::sphere {
 //   points  the map to be mended
 // Between folded and not the energy is made finite: V is replaced by (V + sqrt(V^2 + eps^2)) / 2, which is positive and
 // close to V where V > eps, and eps goes to 0 (Garanzha et al., Foldover-free maps in 50 lines of code, 2021). Returns
-// whether no fold is left; gives up where more than one triangle in a hundred is folded.
+// whether no fold is left and every vertex is surrounded once; gives up where more than one triangle in a hundred is
+// folded.
 [[nodiscard]] bool untangle(const WholeLevel& level, std::span<const Vec3d> before, std::span<Vec3d> points,
                             mesh::ThreadPool& pool);
 

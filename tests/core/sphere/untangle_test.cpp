@@ -4,7 +4,9 @@
 #include <random>
 
 #include "core/mesh/unit_positions.h"
+#include "core/sphere/certificate.h"
 #include "core/sphere/distortion_energy.h"
+#include "core/sphere/orientation.h"
 #include "core/sphere/untangle.h"
 #include "support/shapes.h"
 
@@ -70,6 +72,20 @@ TEST_CASE("folds here and there are taken out, and what is far from them is not 
     for (std::size_t v = 0; v < start.size(); ++v) moved += tangled[v] == start[v] ? 0 : 1;
     CHECK(moved < start.size() / 4);
   }
+}
+
+TEST_CASE("what it calls untangled covers the sphere once") {
+  Map map(5);
+  int untangled = 0;
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    std::vector<Vec3d> tangled = thrown_about(map, 4, 10, seed); // far enough to leave vertices that are wound twice
+    if (!map.untangle(tangled)) continue;
+    ++untangled;
+    std::vector<Vec3f> floats;
+    for (const Vec3d& p : tangled) floats.push_back(sphere::from_grid(sphere::to_grid(p)));
+    CHECK(sphere::certify(floats, map.mesh.triangles).failure() == "");
+  }
+  CHECK(untangled > 10);
 }
 
 TEST_CASE("a map that is tangled all over is given back as such") {
