@@ -1,8 +1,12 @@
 // The report of GET /v1/jobs/{id}/report and of `orbis run --report`.
+#include <algorithm>
+
 #include "api/json.h"
 
 namespace orbis::api {
 namespace {
+
+constexpr std::size_t most_components = 500;
 
 Json topology_json(const mesh::Topology& t) {
   return {{"vertices", t.vertices},
@@ -44,6 +48,62 @@ Json distortion_json(const sphere::Distortion& d) {
           {"l2_stretch", d.l2_stretch},
           {"smallest_area", d.smallest_area},
           {"needles", d.needles}};
+}
+
+Json repairs_json(const Repairs& r) {
+  return {{"degenerate_triangles", r.degenerate_triangles},
+          {"duplicate_triangles", r.duplicate_triangles},
+          {"turned_triangles", r.turned_triangles},
+          {"shared_edges", r.shared_edges},
+          {"double_edges", r.double_edges},
+          {"split_vertices", r.split_vertices},
+          {"one_sided_edges", r.one_sided_edges},
+          {"crack_triangles", r.crack_triangles},
+          {"internal_triangles", r.internal_triangles},
+          {"capped_loops", r.capped_loops},
+          {"handles", r.handles},
+          {"handle_cut_edges", r.handle_cut_edges},
+          {"handle_cut_length", r.handle_cut_length}};
+}
+
+Json component_json(const ComponentReport& c) {
+  Json out{{"mesh", c.mesh},
+           {"triangles", c.triangles},
+           {"vertices", c.vertices},
+           {"genus", c.genus},
+           {"boundary_loops", c.boundary_loops},
+           {"boundary_edges", c.boundary_edges},
+           {"turned_triangles", c.turned_triangles},
+           {"crack_triangles", c.crack_triangles},
+           {"cap_triangles", c.cap_triangles},
+           {"handles", c.handles},
+           {"handle_cut_edges", c.handle_cut_edges},
+           {"handle_cut_length", c.handle_cut_length},
+           {"symmetric_dirichlet", c.distortion.symmetric_dirichlet},
+           {"quasi_conformal_mean", c.distortion.quasi_conformal_mean},
+           {"certified", c.certified},
+           {"problem", nullptr}};
+  if (c.problem) {
+    out["problem"] = {{"code", c.problem->code}, {"message", c.problem->message}, {"where", c.problem->where}};
+  }
+  return out;
+}
+
+// The table is cut at most_components: those with a problem come first, then the largest.
+Json components_json(const std::vector<ComponentReport>& components) {
+  std::vector<const ComponentReport*> shown;
+  shown.reserve(components.size());
+  for (const ComponentReport& c : components) shown.push_back(&c);
+  if (shown.size() > most_components) {
+    std::ranges::stable_sort(shown, [](const ComponentReport* a, const ComponentReport* b) {
+      if (a->problem.has_value() != b->problem.has_value()) return a->problem.has_value();
+      return a->triangles > b->triangles;
+    });
+    shown.resize(most_components);
+  }
+  Json out = Json::array();
+  for (const ComponentReport* c : shown) out.push_back(component_json(*c));
+  return out;
 }
 
 Json atlas_json(const Report::Atlas& a) {
@@ -104,8 +164,10 @@ Json to_json(const Report& report) {
           {"options", to_json(report.options)},
           {"input", {{"triangles", report.input_triangles}, {"vertices", report.input_vertices}}},
           {"topology", topology_json(report.topology)},
-          {"repairs",
-           {{"degenerate_triangles", report.degenerate_triangles}, {"turned_triangles", report.turned_triangles}}},
+          {"partial", report.partial},
+          {"repairs", repairs_json(report.repairs)},
+          {"components", components_json(report.components)},
+          {"components_total", report.components.size()},
           {"embedding",
            {{"t1_ms", report.t1_ms},
             {"t2_ms", report.t2_ms},

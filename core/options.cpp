@@ -10,7 +10,11 @@
 namespace orbis {
 namespace {
 
-constexpr std::array<OptionInfo, 11> table{{
+constexpr std::array<OptionInfo, 13> table{{
+    {"topology", "repair | strict", "repair",
+     "repair: whatever has triangles is parametrized; strict: anything but one closed component of genus 0 is refused"},
+    {"weld_tolerance", "a number, 0 or more", "0",
+     "vertices no farther apart are one, in the model's units before node transforms; 0: exactly equal ones only"},
     {"objective", "isometric | conformal | stretch | shape-preserving", "isometric",
      "what the map keeps: lengths as far as possible, angles, texture resolution, or the paper's shape-preserving "
      "weights"},
@@ -66,6 +70,7 @@ constexpr std::array<std::string_view, 4> objectives{"isometric", "conformal", "
 constexpr std::array<std::string_view, 3> qualities{"draft", "standard", "high"};
 constexpr std::array<std::string_view, 4> sources{"auto", "pattern", "cubemap", "base_color"};
 constexpr std::array<std::string_view, 2> formats{"png", "jpeg"};
+constexpr std::array<std::string_view, 2> topologies{"repair", "strict"};
 constexpr std::array<std::string_view, 2> compressions{"none", "draco"};
 
 // "0.25", "5000" or "deviation:0.1".
@@ -128,7 +133,11 @@ std::string text_of(const std::vector<LodTarget>& targets) {
 std::span<const OptionInfo> option_table() { return table; }
 
 void set_option(Options& options, std::string_view name, std::string_view value) {
-  if (name == "objective") {
+  if (name == "topology") {
+    options.topology = choice<TopologyPolicy>(name, value, topologies);
+  } else if (name == "weld_tolerance") {
+    options.weld_tolerance = number<double>(name, value, 0.0, 1e30);
+  } else if (name == "objective") {
     options.objective = choice<Objective>(name, value, objectives);
   } else if (name == "area_weight") {
     options.area_weight = number<double>(name, value, 0.0, 1.0);
@@ -158,6 +167,8 @@ void set_option(Options& options, std::string_view name, std::string_view value)
 }
 
 std::string get_option(const Options& options, std::string_view name) {
+  if (name == "topology") return text_of(options.topology, topologies);
+  if (name == "weld_tolerance") return text_of(options.weld_tolerance);
   if (name == "objective") return text_of(options.objective, objectives);
   if (name == "area_weight") return text_of(options.area_weight);
   if (name == "quality") return text_of(options.quality, qualities);

@@ -15,6 +15,7 @@ enum class Quality { draft, standard, high };
 enum class TextureSource { automatic, pattern, cubemap, base_color };
 enum class TextureFormat { png, jpeg };
 enum class Compression { none, draco };
+enum class TopologyPolicy { repair, strict };
 
 // When a level of detail is coarse enough.
 struct LodTarget {
@@ -26,6 +27,10 @@ struct LodTarget {
 inline constexpr std::size_t most_lods = 8;
 
 struct Options {
+  // repair: whatever has triangles is parametrized, cut and capped where it must be; strict: anything but one closed
+  // component of genus 0 is refused.
+  TopologyPolicy topology = TopologyPolicy::repair;
+  double weld_tolerance = 0; // vertices no farther apart are one, in the model's units before node transforms; 0: exact
   Objective objective = Objective::isometric;
   // isometric only: 1 weighs areas as much as angles, 0 is conformal; in [0, 1].
   double area_weight = 1;

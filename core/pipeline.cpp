@@ -45,16 +45,16 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   describe_input(asset, report);
 
   clock.report(Stage::topology, 0, 1);
-  const Surface surface = make_surface(asset, report);
+  Surface surface = make_surface(asset, report);
   dump_mesh(dump, "1-surface.obj", surface.mesh.positions, surface.mesh.triangles);
 
-  const std::vector<Vec3d> points = embed(surface, request.options, clock, report);
+  std::vector<Vec3d> points = embed(surface, request.options, clock, report);
 
   const texture::AtlasLayout layout = texture::layout_for(request.options.texture_size);
   clock.report(Stage::atlas, 0, 1);
   const CutSphere sphere = snap_and_cut(surface, points, layout, clock, report);
   const std::vector<Vec3f> delivered = deliverable(sphere.points);
-  report.distortion = measure(surface, delivered);
+  report.distortion = measure(surface, delivered, report);
   const Delivery delivery = make_delivery(asset, surface, sphere.cut);
   dump_mesh(dump, "2-sphere.obj", delivered, surface.mesh.triangles);
   dump_charts(dump, "3-charts.obj", sphere.cut, layout);

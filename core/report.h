@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,13 +24,43 @@ struct Note {
   std::string code, message, where;
 };
 
+// What was done to the surface before it could be unfolded, all components together.
+struct Repairs {
+  std::uint64_t degenerate_triangles = 0; // two corners at one position: delivered, but no part of the surface
+  std::uint64_t duplicate_triangles = 0;  // lie on another one of the same material: delivered with its coordinates
+  std::uint64_t turned_triangles = 0;     // turned to agree with their neighbours
+  std::uint64_t shared_edges = 0;         // of three triangles or more, cut apart
+  std::uint64_t double_edges = 0;         // joined the same two vertices as another edge, cut apart
+  std::uint64_t split_vertices = 0;       // added where sheets were cut apart
+  std::uint64_t one_sided_edges = 0;      // cut, since the surface had only one side
+  std::uint64_t crack_triangles = 0;      // put into cracks at T-junctions, for the parametrization only
+  std::uint64_t internal_triangles = 0;   // of walls inside a body; parametrized like the rest
+  std::uint64_t capped_loops = 0;         // boundary loops closed for the parametrization only, those of cuts included
+  std::uint64_t handles = 0, handle_cut_edges = 0;
+  double handle_cut_length = 0; // in the model's units
+};
+
+// One component of the surface: what it was, what was done to it, and what came out.
+struct ComponentReport {
+  std::uint32_t mesh = 0; // of the document
+  std::uint64_t triangles = 0, vertices = 0;
+  std::uint64_t genus = 0, boundary_loops = 0, boundary_edges = 0; // as found
+  std::uint64_t turned_triangles = 0, crack_triangles = 0, cap_triangles = 0;
+  std::uint64_t handles = 0, handle_cut_edges = 0;
+  double handle_cut_length = 0;
+  sphere::Distortion distortion; // of the delivered triangles, scaled to their part of the sphere
+  bool certified = false;
+  std::optional<Note> problem; // why it has no parametrization; its triangles are delivered as they came
+};
+
 struct Report {
   std::string format; // "glb", "gltf", "draco"
   Options options;
   std::uint64_t input_triangles = 0, input_vertices = 0;
   mesh::Topology topology;
-  std::uint64_t degenerate_triangles = 0; // left out of the surface: two corners at one position
-  std::uint64_t turned_triangles = 0;     // turned to agree with their neighbours
+  Repairs repairs;
+  std::vector<ComponentReport> components;
+  bool partial = false;                   // a component has a problem
   double t1_ms = 0, t2_ms = 0, t3_ms = 0; // the paper's steps
   double minimum = 0;                     // the paper's Eq. 3
   std::uint64_t relaxations = 0;

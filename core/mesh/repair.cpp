@@ -175,6 +175,7 @@ private:
       if (from_soup) piece.soup_vertices = static_cast<std::uint32_t>(out_.mesh.positions.size()) - piece.first_vertex;
     }
     for (const auto& loop : loops) close(loop, fans);
+    piece.caps = static_cast<std::uint32_t>(loops.size());
     piece.vertices = static_cast<std::uint32_t>(out_.mesh.positions.size()) - piece.first_vertex;
     piece.triangles = static_cast<std::uint32_t>(out_.mesh.triangles.size()) - piece.first_triangle;
   }

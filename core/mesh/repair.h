@@ -25,6 +25,7 @@ struct ClosedPiece {
   std::uint32_t turned_triangles = 0;
   std::uint32_t crack_triangles = 0; // added at T-junctions
   HandleCut handles;
+  std::uint32_t caps = 0; // one a boundary loop, those along cuts included
 };
 
 struct RepairCounts {

@@ -24,6 +24,12 @@ struct Welded {
 // triangles: indices into positions, all in range. O(n).
 [[nodiscard]] Welded weld(std::span<const Vec3f> positions, std::span<const Triangle> triangles);
 
+// Joins vertices that are no farther apart than the tolerance: each goes to the nearest of the vertices before it that
+// were not joined themselves, so that chains do not form, and takes its position. tolerance > 0, in units of the
+// positions. O(n).
+[[nodiscard]] Welded weld_within(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
+                                 double tolerance);
+
 // The same shape, but every input vertex stays its own: for meshes whose indices alone say what is connected.
 [[nodiscard]] Welded keep_indices(std::span<const Vec3f> positions, std::span<const Triangle> triangles);
 

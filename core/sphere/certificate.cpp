@@ -50,24 +50,66 @@ std::vector<GridPoint> read_points(std::span<const Vec3f> points, Certificate& o
   return grid;
 }
 
-} // namespace
-
-Certificate certify(std::span<const Vec3f> points, std::span<const mesh::Triangle> triangles) {
+Certificate counted(std::span<const Vec3f> points, std::span<const mesh::Triangle> triangles) {
   Certificate out;
   out.vertices = points.size();
   out.triangles = triangles.size();
-  for (const mesh::Triangle& t : triangles) {
-    if (std::ranges::any_of(t, [&](mesh::Index v) { return v >= points.size(); })) return out;
-  }
-  check_surface(triangles, points.size(), out);
+  return out;
+}
+
+bool in_range(std::span<const Vec3f> points, std::span<const mesh::Triangle> triangles) {
+  return std::ranges::all_of(triangles, [&](const mesh::Triangle& t) {
+    return std::ranges::all_of(t, [&](mesh::Index v) { return v < points.size(); });
+  });
+}
+
+// One triangle on every edge, or two in opposite directions.
+bool edges_agree(std::span<const mesh::Triangle> triangles, std::size_t vertex_count) {
+  bool agree = !triangles.empty();
+  const auto start = [&](std::uint32_t h) { return triangles[h / 3][h % 3]; };
+  mesh::EdgeTable(triangles, vertex_count)
+      .for_each([&](mesh::Index, mesh::Index, std::span<const mesh::EdgeSide> sides) {
+        agree =
+            agree && sides.size() < 3 && (sides.size() < 2 || start(sides[0].half_edge) != start(sides[1].half_edge));
+      });
+  return agree;
+}
+
+// Exact orientation of every triangle, and how often they cover the sphere, together with `other_angle`.
+void check_map(std::span<const Vec3f> points, std::span<const mesh::Triangle> triangles, double other_angle,
+               Certificate& out) {
   const std::vector<GridPoint> grid = read_points(points, out);
-  double angle = 0;
   for (const mesh::Triangle& t : triangles) {
     if (orientation(grid[t[0]], grid[t[1]], grid[t[2]]) != 1) ++out.folded;
-    angle += solid_angle(Vec3d(points[t[0]]), Vec3d(points[t[1]]), Vec3d(points[t[2]]));
   }
-  out.degree = angle / (4 * std::numbers::pi);
+  out.degree = (solid_angle_of(points, triangles) + other_angle) / (4 * std::numbers::pi);
   out.valid = out.failure().empty();
+}
+
+} // namespace
+
+double solid_angle_of(std::span<const Vec3f> points, std::span<const mesh::Triangle> triangles) {
+  double sum = 0;
+  for (const mesh::Triangle& t : triangles)
+    sum += solid_angle(Vec3d(points[t[0]]), Vec3d(points[t[1]]), Vec3d(points[t[2]]));
+  return sum;
+}
+
+Certificate certify(std::span<const Vec3f> points, std::span<const mesh::Triangle> triangles) {
+  Certificate out = counted(points, triangles);
+  if (!in_range(points, triangles)) return out;
+  check_surface(triangles, points.size(), out);
+  check_map(points, triangles, 0, out);
+  return out;
+}
+
+Certificate certify_pieces(std::span<const Vec3f> points, std::span<const mesh::Triangle> triangles,
+                           double caps_solid_angle) {
+  Certificate out = counted(points, triangles);
+  if (!in_range(points, triangles)) return out;
+  out.closed = out.manifold = out.connected = edges_agree(triangles, points.size());
+  out.euler_characteristic = 2;
+  check_map(points, triangles, caps_solid_angle, out);
   return out;
 }
 

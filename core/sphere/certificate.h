@@ -29,4 +29,15 @@ struct Certificate {
 // points: one per vertex, as delivered (float32). triangles: the surface that was parametrized, indices into points.
 [[nodiscard]] Certificate certify(std::span<const Vec3f> points, std::span<const mesh::Triangle> triangles);
 
+// The same for the pieces of a surface that was closed by caps, without the caps: where a cap was, edges have one
+// triangle. Required are two triangles in opposite directions on every other edge, and one covering of the sphere by
+// pieces and caps together; `closed`, `manifold` and `connected` say so, and the Euler characteristic is that of the
+// surface with its caps, which certify() has proven on the uncut triangles.
+//   caps_solid_angle  of the caps' triangles, in steradians
+[[nodiscard]] Certificate certify_pieces(std::span<const Vec3f> points, std::span<const mesh::Triangle> triangles,
+                                         double caps_solid_angle);
+
+// Sum of the signed solid angles, in steradians.
+[[nodiscard]] double solid_angle_of(std::span<const Vec3f> points, std::span<const mesh::Triangle> triangles);
+
 } // namespace orbis::sphere

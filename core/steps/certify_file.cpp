@@ -68,6 +68,7 @@ std::vector<mesh::TriangleMesh> by_component(const ReadBack& file, std::size_t c
   std::vector<mesh::TriangleMesh> out(components);
   std::vector<mesh::Index> place(file.sphere.size(), no_primitive); // no vertex serves two components
   for (std::size_t t = 0; t < file.triangles.size(); ++t) {
+    if (file.component_of[t] == no_primitive) continue;
     mesh::TriangleMesh& piece = out[file.component_of[t]];
     mesh::Triangle placed{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -102,9 +103,24 @@ void add(const sphere::Certificate& one, bool first, sphere::Certificate& all) {
   all.valid = all.valid && one.valid;
 }
 
+// Every copy of an input vertex must be where the input has it, to the bit.
+void check_positions(const asset::Asset& input, const Delivery& delivery, const ReadBack& file) {
+  for (std::size_t p = 0; p < input.primitives.size(); ++p) {
+    if (delivery.primitives[p].indices.empty()) continue;
+    const std::vector<Vec3f> positions = input.primitives[p].positions();
+    const std::vector<VertexSource>& sources = delivery.sources[p];
+    for (std::size_t v = 0; v < sources.size(); ++v) {
+      const int k = sources[v].copied();
+      if (k < 0) continue;
+      const Vec3f& wanted = positions[sources[v].corners[static_cast<std::size_t>(k)]];
+      if (!(file.position.at(file.first[p] + v) == wanted)) refuse("a vertex has moved");
+    }
+  }
+}
+
 // The component's points: from the file where it has them, from memory for the caps.
-std::vector<Vec3f> points_of(const Component& c, const Surface& surface, std::span<const sphere::GridPoint> points,
-                             const Delivery& delivery, const ReadBack& file) {
+std::vector<Vec3f> points_of(const Component& c, std::span<const sphere::GridPoint> points, const Delivery& delivery,
+                             const ReadBack& file) {
   std::vector<Vec3f> out;
   out.reserve(c.vertices);
   for (std::uint32_t v = c.first_vertex; v < c.end_vertex(); ++v) {
@@ -115,7 +131,6 @@ std::vector<Vec3f> points_of(const Component& c, const Surface& surface, std::sp
     const OutputVertex o = delivery.of_surface_vertex[v];
     const std::size_t at = file.first[o.primitive] + o.vertex;
     out.push_back(file.sphere.at(at));
-    if (!(file.position.at(at) == surface.mesh.positions[v])) refuse("a vertex has moved");
   }
   return out;
 }
@@ -125,20 +140,26 @@ std::vector<Vec3f> points_of(const Component& c, const Surface& surface, std::sp
 void certify_file(std::span<const std::byte> glb, const asset::Asset& asset, const Surface& surface,
                   std::span<const sphere::GridPoint> points, const Delivery& delivery, Report& report) {
   const ReadBack file = read_back(glb, asset, delivery);
+  check_positions(asset, delivery, file);
   const std::vector<mesh::TriangleMesh> delivered = by_component(file, surface.components.size());
   for (std::size_t i = 0; i < surface.components.size(); ++i) {
     const Component& c = surface.components[i];
-    const sphere::Certificate whole =
-        sphere::certify(points_of(c, surface, points, delivery, file), mesh_of(surface, c).triangles);
+    const mesh::TriangleMesh closed = mesh_of(surface, c);
+    const std::vector<Vec3f> on_sphere = points_of(c, points, delivery, file);
+    const sphere::Certificate whole = sphere::certify(on_sphere, closed.triangles);
     if (!whole.valid) refuse(whole.failure());
     add(whole, i == 0, report.certificate);
 
     // One sphere point, one point of the surface: joined by equal _SPHERE, the delivered triangles must close up again.
     const mesh::Welded joined = mesh::weld(delivered[i].positions, delivered[i].triangles);
     if (!joined.degenerate.empty()) refuse("a delivered triangle has no area on the sphere");
-    const sphere::Certificate cut = sphere::certify(joined.mesh.positions, joined.mesh.triangles);
+    const auto caps = std::span(closed.triangles).subspan(c.input_triangles);
+    const sphere::Certificate cut = c.has_caps() ? sphere::certify_pieces(joined.mesh.positions, joined.mesh.triangles,
+                                                                          sphere::solid_angle_of(on_sphere, caps))
+                                                 : sphere::certify(joined.mesh.positions, joined.mesh.triangles);
     if (!cut.valid) refuse(cut.failure());
     add(cut, i == 0, report.cut_certificate);
+    report.components[c.number].certified = true;
   }
   report.output_triangles = file.triangles.size();
   report.output_vertices = file.sphere.size();

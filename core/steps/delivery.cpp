@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "core/steps/riders.h"
+
 namespace orbis {
 namespace {
 
@@ -66,8 +68,11 @@ private:
 
 } // namespace
 
-Delivery make_delivery(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut) {
+Delivery make_delivery(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut,
+                       RiderPolicy riders) {
   Delivery out = Numbering(asset, surface, cut).run();
+  std::vector<ExtraVertex> extra;
+  if (riders == RiderPolicy::deliver) extra = add_riders(surface, cut, out);
   std::vector<Attribute> uv, sphere;
   for (std::size_t p = 0; p < out.primitives.size(); ++p) {
     const asset::Primitive& input = asset.primitives[p];
@@ -79,15 +84,17 @@ Delivery make_delivery(const asset::Asset& asset, const Surface& surface, const 
     uv.push_back(float_attribute("TEXCOORD_" + std::to_string(primitive.atlas_texcoord), 2, count));
     sphere.push_back(float_attribute("_SPHERE", 3, count));
   }
+  const auto place = [&](const OutputVertex& o, const Vec3f& on_sphere, const Vec2f& in_atlas) {
+    uv[o.primitive].set(o.vertex, 0, double{in_atlas.x});
+    uv[o.primitive].set(o.vertex, 1, double{in_atlas.y});
+    sphere[o.primitive].set(o.vertex, 0, double{on_sphere.x});
+    sphere[o.primitive].set(o.vertex, 1, double{on_sphere.y});
+    sphere[o.primitive].set(o.vertex, 2, double{on_sphere.z});
+  };
   for (std::size_t v = 0; v < cut.vertices.size(); ++v) {
-    const OutputVertex o = out.of_cut_vertex[v];
-    const Vec3f s = sphere::from_grid(cut.vertices[v].sphere);
-    uv[o.primitive].set(o.vertex, 0, double{cut.vertices[v].uv.x});
-    uv[o.primitive].set(o.vertex, 1, double{cut.vertices[v].uv.y});
-    sphere[o.primitive].set(o.vertex, 0, double{s.x});
-    sphere[o.primitive].set(o.vertex, 1, double{s.y});
-    sphere[o.primitive].set(o.vertex, 2, double{s.z});
+    place(out.of_cut_vertex[v], sphere::from_grid(cut.vertices[v].sphere), cut.vertices[v].uv);
   }
+  for (const ExtraVertex& v : extra) place(v.at, v.sphere, v.uv);
   for (std::size_t p = 0; p < out.primitives.size(); ++p) {
     std::erase_if(out.primitives[p].attributes, [](const Attribute& a) { return a.name == "_SPHERE"; });
     out.primitives[p].attributes.push_back(std::move(uv[p]));

@@ -23,12 +23,16 @@ struct Delivery {
   std::vector<std::vector<VertexSource>> sources; // where their vertices come from
   std::vector<OutputVertex> of_cut_vertex;        // cut vertex -> output vertex
   std::vector<OutputVertex> of_surface_vertex; // vertex of the surface -> one of its copies in the output; not of caps
-  std::vector<std::vector<std::uint32_t>> component_of; // primitive -> its output triangles' components
+  std::vector<std::vector<std::uint32_t>>
+      component_of; // primitive -> its output triangles' components; no_primitive for riders
 };
 
 // Every attribute of the input at the vertices of the cut mesh, with TEXCOORD_n (the atlas; n: the first that is free)
-// and _SPHERE added.
-[[nodiscard]] Delivery make_delivery(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut);
+// and _SPHERE added. Riders stand behind the triangles of the surface;
+// levels of detail leave them out.
+enum class RiderPolicy { deliver, leave_out };
+[[nodiscard]] Delivery make_delivery(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut,
+                                     RiderPolicy riders = RiderPolicy::deliver);
 
 // Reads the finished file and proves each component's map on what it says: report.certificate at the input's
 // connectivity (the caps' own points, which no file holds, are those of `points`), report.cut_certificate on the

@@ -8,6 +8,7 @@
 #include "core/mesh/thread_pool.h"
 #include "core/sphere/canonical_turn.h"
 #include "core/sphere/embedding.h"
+#include "core/steps/leave_out.h"
 
 namespace orbis {
 namespace {
@@ -64,7 +65,7 @@ public:
       : surface_(surface), options_(options), points_(surface.mesh.positions.size()),
         embeddings_(surface.components.size()), minimum_(surface.components.size(), 0) {}
 
-  void run_one(Progress& progress) { embed(0, surface_.mesh, options_.threads, progress); }
+  void run_one(Progress& progress) { try_to_embed(0, surface_.mesh, options_.threads, progress); }
 
   void run_all(Progress& progress) {
     SharedProgress shared(progress, surface_.mesh.positions.size());
@@ -74,7 +75,7 @@ public:
       if (surface_.components[c].triangles < small_component) {
         small.push_back(c);
       } else {
-        embed(c, mesh_of(surface_, surface_.components[c]), options_.threads, quiet);
+        try_to_embed(c, mesh_of(surface_, surface_.components[c]), options_.threads, quiet);
         shared.add(surface_.components[c].vertices);
       }
     }
@@ -94,6 +95,7 @@ public:
   }
 
   std::vector<Vec3d> take_points() { return std::move(points_); }
+  [[nodiscard]] const Problems& problems() const { return problems_; }
 
 private:
   // The largest first, so that no thread is left with a large one at the end.
@@ -107,7 +109,7 @@ private:
       const std::uint32_t c = small[begin];
       try {
         quiet.check();
-        embed(c, mesh_of(surface_, surface_.components[c]), 1, quiet);
+        try_to_embed(c, mesh_of(surface_, surface_.components[c]), 1, quiet);
         shared.add(surface_.components[c].vertices);
       } catch (...) {
         const std::lock_guard lock(mutex);
@@ -115,6 +117,16 @@ private:
       }
     });
     if (failure) std::rethrow_exception(failure);
+  }
+
+  void try_to_embed(std::uint32_t c, const mesh::TriangleMesh& mesh, std::uint32_t threads, Progress& progress) {
+    try {
+      embed(c, mesh, threads, progress);
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::not_certified) throw;
+      const std::lock_guard lock(problems_mutex_);
+      problems_[c] = {"not-embedded", e.message(), "/meshes/" + std::to_string(surface_.components[c].mesh)};
+    }
   }
 
   void embed(std::uint32_t c, const mesh::TriangleMesh& mesh, std::uint32_t threads, Progress& progress) {
@@ -131,11 +143,13 @@ private:
   std::vector<Vec3d> points_;
   std::vector<sphere::Embedding> embeddings_; // without their points
   std::vector<double> minimum_;
+  Problems problems_;
+  std::mutex problems_mutex_;
 };
 
 } // namespace
 
-std::vector<Vec3d> embed(const Surface& surface, const Options& options, Progress& progress, Report& report) {
+std::vector<Vec3d> embed(Surface& surface, const Options& options, Progress& progress, Report& report) {
   Embedder embedder(surface, options);
   if (surface.components.size() == 1) {
     embedder.run_one(progress);
@@ -149,7 +163,9 @@ std::vector<Vec3d> embed(const Surface& surface, const Options& options, Progres
                             "better",
                             ""});
   }
-  return embedder.take_points();
+  std::vector<Vec3d> points = embedder.take_points();
+  leave_out(embedder.problems(), surface, points, report);
+  return points;
 }
 
 } // namespace orbis

@@ -118,7 +118,7 @@ std::vector<DetailLevel> make_levels(const asset::Asset& asset, const Surface& s
     note_concessions(c, "/levels/" + std::to_string(i), report);
 
     DetailLevel& level = out.emplace_back(std::move(levels[i]), Delivery{});
-    level.delivery = make_delivery(asset, surface, level.level.mesh);
+    level.delivery = make_delivery(asset, surface, level.level.mesh, RiderPolicy::leave_out);
     place(level.level, level.delivery);
     for (const auto& sources : level.delivery.sources) facts.vertices += sources.size();
   }

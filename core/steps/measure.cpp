@@ -48,14 +48,17 @@ private:
 
 } // namespace
 
-sphere::Distortion measure(const Surface& surface, std::span<const Vec3f> points) {
+sphere::Distortion measure(const Surface& surface, std::span<const Vec3f> points, Report& report) {
   if (surface.components.size() == 1 && !surface.components[0].has_caps()) {
-    return sphere::measure_distortion(surface.mesh, points);
+    return report.components[surface.components[0].number].distortion =
+               sphere::measure_distortion(surface.mesh, points);
   }
   Mean mean;
   for (const Component& c : surface.components) {
     const mesh::TriangleMesh piece = input_mesh_of(surface, c);
-    mean.add(sphere::measure_distortion(piece, points.subspan(c.first_vertex, c.input_vertices)), area_of(piece));
+    sphere::Distortion& one = report.components[c.number].distortion;
+    one = sphere::measure_distortion(piece, points.subspan(c.first_vertex, c.input_vertices));
+    mean.add(one, area_of(piece));
   }
   return mean.is_empty() ? sphere::Distortion{} : mean.get();
 }

@@ -9,7 +9,8 @@
 namespace orbis {
 
 // The measures of the delivered triangles, each component scaled to its own part of its sphere. Means are weighted by
-// surface area over all components. points: one per vertex of the surface.
-[[nodiscard]] sphere::Distortion measure(const Surface& surface, std::span<const Vec3f> points);
+// surface area over all components; each component's own go to report.components. points: one per vertex of the
+// surface.
+[[nodiscard]] sphere::Distortion measure(const Surface& surface, std::span<const Vec3f> points, Report& report);
 
 } // namespace orbis

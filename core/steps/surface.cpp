@@ -2,143 +2,17 @@
 
 #include <algorithm>
 
-#include "core/mesh/disjoint_sets.h"
+#include "core/mesh/repair.h"
+#include "core/mesh/topology.h"
+#include "core/steps/leave_out.h"
+#include "core/steps/repair_notes.h"
+#include "core/steps/soup.h"
 
 namespace orbis {
 namespace {
 
-// The primitives of one mesh of the document, behind one another.
-struct Row {
-  std::uint32_t mesh = 0;
-  std::uint32_t first_vertex = 0; // in the row of all meshes
-  std::vector<Vec3f> positions;
-  std::vector<mesh::Triangle> triangles; // indices into positions
-  std::vector<std::uint32_t> primitive_of;
-};
-
-// One row per mesh of the document. Fills surface.first_vertex.
-std::vector<Row> rows_of(const asset::Asset& asset, Surface& surface) {
-  std::vector<Row> rows;
-  std::uint32_t vertices = 0;
-  for (std::uint32_t p = 0; p < asset.primitives.size(); ++p) {
-    const asset::Primitive& primitive = asset.primitives[p];
-    if (rows.empty() || rows.back().mesh != primitive.mesh) rows.push_back({primitive.mesh, vertices, {}, {}, {}});
-    Row& row = rows.back();
-    surface.first_vertex.push_back(vertices);
-    const auto first = static_cast<std::uint32_t>(row.positions.size());
-    const std::vector<Vec3f> positions = primitive.positions();
-    row.positions.insert(row.positions.end(), positions.begin(), positions.end());
-    vertices += static_cast<std::uint32_t>(positions.size());
-    for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
-      row.triangles.push_back(
-          {first + primitive.indices[i], first + primitive.indices[i + 1], first + primitive.indices[i + 2]});
-      row.primitive_of.push_back(p);
-    }
-  }
-  return rows;
-}
-
-// Indices first: where they alone describe closed surfaces, coincident vertices are different points of them.
-mesh::Welded join_vertices(const Row& row) {
-  mesh::Welded joined = mesh::keep_indices(row.positions, row.triangles);
-  const mesh::Topology found = mesh::classify(joined.mesh);
-  if (found.boundary_edges == 0 && found.nonmanifold_edges == 0 && found.nonmanifold_vertices == 0) return joined;
-  return mesh::weld(row.positions, row.triangles);
-}
-
-// The triangles by component, components by their first triangle.
-std::vector<std::vector<std::uint32_t>> by_component(const mesh::TriangleMesh& mesh) {
-  mesh::DisjointSets sets(mesh.positions.size());
-  for (const mesh::Triangle& t : mesh.triangles) {
-    sets.unite(t[0], t[1]);
-    sets.unite(t[0], t[2]);
-  }
-  std::vector<std::uint32_t> number(mesh.positions.size(), no_primitive);
-  std::vector<std::vector<std::uint32_t>> out;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    std::uint32_t& n = number[sets.find(mesh.triangles[t][0])];
-    if (n == no_primitive) {
-      n = static_cast<std::uint32_t>(out.size());
-      out.emplace_back();
-    }
-    out[n].push_back(t);
-  }
-  return out;
-}
-
-std::string counted(std::uint64_t n, const std::string& what) {
-  return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
-}
-
-void check_extent(const mesh::TriangleMesh& mesh) {
-  const bool point = std::ranges::all_of(mesh.positions, [&](const Vec3f& p) { return p == mesh.positions.front(); });
-  if (point)
-    throw Error(ErrorCode::invalid_geometry, "all vertices of the surface are at one position: it has no extent");
-}
-
-// Appends the components of one mesh of the document to the surface.
-class Collector {
-public:
-  Collector(const Row& row, Report& report, Surface& out)
-      : row_(row), report_(report), out_(out), joined_(join_vertices(row)) {}
-
-  void run() {
-    report_.degenerate_triangles += joined_.degenerate.size();
-    if (!joined_.mesh.positions.empty()) check_extent(joined_.mesh);
-    place_.assign(joined_.mesh.positions.size(), no_primitive);
-    for (const auto& triangles : by_component(joined_.mesh)) add(triangles);
-  }
-
-private:
-  void add(std::span<const std::uint32_t> triangles) {
-    Component c;
-    c.mesh = row_.mesh;
-    c.first_vertex = static_cast<std::uint32_t>(out_.mesh.positions.size());
-    c.first_triangle = static_cast<std::uint32_t>(out_.mesh.triangles.size());
-    c.triangles = c.input_triangles = static_cast<std::uint32_t>(triangles.size());
-    mesh::TriangleMesh piece;
-    for (const std::uint32_t t : triangles) {
-      mesh::Triangle placed{};
-      for (std::size_t k = 0; k < 3; ++k) placed[k] = place(joined_.mesh.triangles[t][k], piece);
-      piece.triangles.push_back(placed);
-      const mesh::Triangle& corners = row_.triangles[joined_.triangle_of[t]];
-      out_.corners.push_back(
-          {row_.first_vertex + corners[0], row_.first_vertex + corners[1], row_.first_vertex + corners[2]});
-      out_.primitive_of.push_back(row_.primitive_of[joined_.triangle_of[t]]);
-    }
-    report_.topology = mesh::classify(piece);
-    if (!report_.topology.is_sphere()) throw Error(ErrorCode::not_genus_zero, report_.topology.refusal());
-    const std::vector<std::uint32_t> turned = mesh::orient_consistently(piece);
-    for (const std::uint32_t t : turned) {
-      mesh::Triangle& corners = out_.corners[c.first_triangle + t];
-      std::swap(corners[1], corners[2]);
-    }
-    report_.turned_triangles += turned.size();
-    out_.mesh.positions.insert(out_.mesh.positions.end(), piece.positions.begin(), piece.positions.end());
-    for (const auto& [i, j, k] : piece.triangles) {
-      out_.mesh.triangles.push_back({c.first_vertex + i, c.first_vertex + j, c.first_vertex + k});
-    }
-    c.vertices = c.input_vertices = static_cast<std::uint32_t>(piece.positions.size());
-    out_.components.push_back(c);
-  }
-
-  mesh::Index place(mesh::Index v, mesh::TriangleMesh& piece) {
-    if (place_[v] == no_primitive) {
-      place_[v] = static_cast<mesh::Index>(piece.positions.size());
-      piece.positions.push_back(joined_.mesh.positions[v]);
-    }
-    return place_[v];
-  }
-
-  const Row& row_;
-  Report& report_;
-  Surface& out_;
-  mesh::Welded joined_;
-  std::vector<mesh::Index> place_; // welded vertex -> vertex of its component
-};
-
-mesh::TriangleMesh piece_of(const Surface& surface, const Component& c, std::uint32_t vertices,
-                            std::uint32_t triangles) {
+mesh::TriangleMesh part_of(const Surface& surface, const Component& c, std::uint32_t vertices,
+                           std::uint32_t triangles) {
   mesh::TriangleMesh out;
   const auto position = surface.mesh.positions.begin() + c.first_vertex;
   out.positions.assign(position, position + vertices);
@@ -149,41 +23,197 @@ mesh::TriangleMesh piece_of(const Surface& surface, const Component& c, std::uin
   return out;
 }
 
+// What is a sphere already needs no repair but to agree with itself.
+mesh::Repaired as_it_is(mesh::TriangleMesh& mesh) {
+  mesh::Repaired out;
+  const std::vector<std::uint32_t> turned = mesh::orient_consistently(mesh);
+  out.turned.assign(mesh.triangles.size(), false);
+  for (const std::uint32_t t : turned) out.turned[t] = true;
+  out.triangle_of.resize(mesh.triangles.size());
+  for (std::uint32_t t = 0; t < out.triangle_of.size(); ++t) out.triangle_of[t] = t;
+  out.point_of.resize(mesh.positions.size());
+  for (std::uint32_t v = 0; v < out.point_of.size(); ++v) out.point_of[v] = v;
+  mesh::ClosedPiece piece;
+  piece.vertices = piece.soup_vertices = static_cast<std::uint32_t>(mesh.positions.size());
+  piece.triangles = piece.soup_triangles = static_cast<std::uint32_t>(mesh.triangles.size());
+  piece.turned_triangles = static_cast<std::uint32_t>(turned.size());
+  out.pieces.push_back(piece);
+  out.mesh = std::move(mesh);
+  return out;
+}
+
+mesh::Triangle turned(const mesh::Triangle& t) { return {t[0], t[2], t[1]}; }
+
+class Assembly {
+public:
+  Assembly(const asset::Asset& asset, Soup soup, Report& report)
+      : asset_(asset), soup_(std::move(soup)), report_(report) {}
+
+  Surface run() {
+    const bool is_sphere = report_.topology.is_sphere();
+    const bool may_have_duplicates = report_.topology.nonmanifold_edges > 0 || !report_.topology.consistently_oriented;
+    if (!is_sphere && may_have_duplicates) duplicates_ = take_duplicates(asset_, soup_);
+    repaired_ = is_sphere ? as_it_is(soup_.mesh)
+                          : mesh::repair(soup_.mesh.positions, soup_.mesh.triangles, soup_.corners,
+                                         report_.options.weld_tolerance);
+    place_triangles();
+    place_components();
+    place_duplicates();
+    place_degenerate();
+    out_.mesh = std::move(repaired_.mesh);
+    out_.first_vertex = std::move(soup_.first_vertex);
+    return std::move(out_);
+  }
+
+private:
+  void place_triangles() {
+    surface_triangle_.assign(soup_.corners.size(), no_primitive);
+    for (std::uint32_t t = 0; t < repaired_.triangle_of.size(); ++t) {
+      const std::uint32_t source = repaired_.triangle_of[t];
+      if (source == mesh::added_triangle) {
+        out_.corners.push_back({no_primitive, no_primitive, no_primitive});
+        out_.primitive_of.push_back(no_primitive);
+        continue;
+      }
+      surface_triangle_[source] = t;
+      out_.corners.push_back(repaired_.turned[source] ? turned(soup_.corners[source]) : soup_.corners[source]);
+      out_.primitive_of.push_back(soup_.primitive_of[source]);
+    }
+  }
+
+  void place_components() {
+    for (const mesh::ClosedPiece& p : repaired_.pieces) {
+      const std::uint32_t mesh = asset_.primitives[out_.primitive_of[p.first_triangle]].mesh;
+      const auto number = static_cast<std::uint32_t>(out_.components.size());
+      out_.components.push_back(
+          {p.first_vertex, p.vertices, p.soup_vertices, p.first_triangle, p.triangles, p.soup_triangles, mesh, number});
+      ComponentReport facts;
+      facts.mesh = mesh;
+      facts.triangles = p.soup_triangles;
+      facts.vertices = p.soup_vertices;
+      facts.genus = p.genus;
+      facts.boundary_loops = p.boundary_loops;
+      facts.boundary_edges = p.boundary_edges;
+      facts.turned_triangles = p.turned_triangles;
+      facts.crack_triangles = p.crack_triangles;
+      facts.cap_triangles = p.triangles - p.soup_triangles - p.crack_triangles;
+      facts.handles = p.handles.loops;
+      facts.handle_cut_edges = p.handles.edges;
+      facts.handle_cut_length = p.handles.length;
+      report_.components.push_back(std::move(facts));
+      add_up(report_.components.back(), p.caps);
+    }
+    Repairs& sum = report_.repairs;
+    sum.degenerate_triangles = soup_.degenerate.size();
+    sum.duplicate_triangles = duplicates_.size();
+    sum.shared_edges = repaired_.counts.shared_edges;
+    sum.double_edges = repaired_.counts.double_edges;
+    sum.split_vertices = repaired_.counts.split_vertices;
+    sum.one_sided_edges = repaired_.counts.one_sided_edges;
+    sum.internal_triangles = repaired_.counts.internal_triangles;
+  }
+
+  void add_up(const ComponentReport& component, std::uint32_t caps) {
+    Repairs& sum = report_.repairs;
+    sum.turned_triangles += component.turned_triangles;
+    sum.crack_triangles += component.crack_triangles;
+    sum.capped_loops += caps;
+    sum.handles += component.handles;
+    sum.handle_cut_edges += component.handle_cut_edges;
+    sum.handle_cut_length += component.handle_cut_length;
+  }
+
+  // Turned and rotated as its twin is, so that corner lies on corner.
+  void place_duplicates() {
+    for (const Duplicate& d : duplicates_) {
+      const mesh::Triangle& points = soup_.mesh.triangles[d.original];
+      const auto shift =
+          static_cast<std::size_t>(std::ranges::find(d.triangle.points, points[0]) - d.triangle.points.begin());
+      mesh::Triangle corners{};
+      for (std::size_t k = 0; k < 3; ++k) corners[k] = d.triangle.corners[(k + shift) % 3];
+      if (repaired_.turned[d.original]) corners = turned(corners);
+      out_.riders.push_back({d.triangle.primitive, corners, surface_triangle_[d.original]});
+    }
+  }
+
+  void place_degenerate() {
+    if (soup_.degenerate.empty()) return;
+    std::vector<std::uint32_t> at(repaired_.point_of.size(), no_primitive); // point -> vertex of the surface
+    at.resize(std::max(at.size(), points_in_use()), no_primitive);
+    for (const Component& c : out_.components) {
+      for (std::uint32_t v = c.first_vertex + c.input_vertices; v-- > c.first_vertex;) at[repaired_.point_of[v]] = v;
+    }
+    for (const LooseTriangle& t : soup_.degenerate) {
+      Rider rider{t.primitive, t.corners};
+      for (std::size_t k = 0; k < 3; ++k) rider.vertices[k] = at[t.points[k]];
+      out_.riders.push_back(rider);
+    }
+  }
+
+  [[nodiscard]] std::size_t points_in_use() const {
+    std::size_t count = 0;
+    for (const std::uint32_t p : repaired_.point_of)
+      count = std::max(count, p == no_primitive ? 0 : std::size_t{p} + 1);
+    for (const LooseTriangle& t : soup_.degenerate)
+      count = std::max(count, std::size_t{std::ranges::max(t.points)} + 1);
+    return count;
+  }
+
+  const asset::Asset& asset_;
+  Soup soup_;
+  Report& report_;
+  std::vector<Duplicate> duplicates_;
+  mesh::Repaired repaired_;
+  std::vector<std::uint32_t> surface_triangle_; // triangle of the soup -> triangle of the surface
+  Surface out_;
+};
+
+bool has_extent(const Surface& surface, const Component& c) {
+  const auto positions = std::span(surface.mesh.positions).subspan(c.first_vertex, c.input_vertices);
+  return std::ranges::any_of(positions, [&](const Vec3f& p) { return !(p == positions.front()); });
+}
+
+void leave_out_points(Surface& surface, Report& report) {
+  if (surface.components.empty()) {
+    throw Error(ErrorCode::invalid_geometry,
+                "all triangles are degenerate: each has two corners at one position, so there is no surface");
+  }
+  Problems problems;
+  for (std::uint32_t i = 0; i < surface.components.size(); ++i) {
+    const Component& c = surface.components[i];
+    if (has_extent(surface, c)) continue;
+    problems[i] = {"no-extent", "all vertices of the component are at one position",
+                   "/meshes/" + std::to_string(c.mesh)};
+  }
+  if (problems.size() == surface.components.size()) {
+    throw Error(ErrorCode::invalid_geometry, "all vertices of the surface are at one position: it has no extent");
+  }
+  std::vector<Vec3d> no_points;
+  leave_out(problems, surface, no_points, report);
+}
+
 } // namespace
 
 mesh::TriangleMesh mesh_of(const Surface& surface, const Component& c) {
-  return piece_of(surface, c, c.vertices, c.triangles);
+  return part_of(surface, c, c.vertices, c.triangles);
 }
 
 mesh::TriangleMesh input_mesh_of(const Surface& surface, const Component& c) {
-  return piece_of(surface, c, c.input_vertices, c.input_triangles);
+  return part_of(surface, c, c.input_vertices, c.input_triangles);
 }
 
 Surface make_surface(const asset::Asset& asset, Report& report) {
-  Surface out;
-  const std::vector<Row> rows = rows_of(asset, out);
-  for (const Row& row : rows) {
-    report.input_triangles += row.triangles.size();
-    report.input_vertices += row.positions.size();
-    Collector(row, report, out).run();
+  Soup soup = make_soup(asset, report.options.weld_tolerance);
+  report.input_triangles = soup.input_triangles;
+  report.input_vertices = soup.input_vertices;
+  report.topology = mesh::classify(soup.mesh);
+  const std::uint64_t unused = soup.unused_vertices;
+  if (report.options.topology == TopologyPolicy::strict && !report.topology.is_sphere()) {
+    throw Error(ErrorCode::not_genus_zero, report.topology.refusal());
   }
-  if (out.components.empty()) throw Error(ErrorCode::not_genus_zero, mesh::classify({}).refusal());
-  report.topology.components = static_cast<std::uint32_t>(out.components.size());
-  report.topology.vertices = out.mesh.positions.size();
-  report.topology.triangles = out.mesh.triangles.size();
-  if (report.degenerate_triangles > 0) {
-    report.notes.push_back({"degenerate-triangles",
-                            counted(report.degenerate_triangles, "triangle") +
-                                " without area left out: two of the corners are at one position",
-                            ""});
-  }
-  if (report.turned_triangles > 0) {
-    report.notes.push_back({"turned-triangles",
-                            counted(report.turned_triangles, "triangle") + " turned to agree with the neighbours", ""});
-  }
-  if (report.topology.signed_volume < 0 && report.turned_triangles == 0) {
-    report.notes.push_back({"inside-out", "the surface is inside out and was kept so: its triangles face inward", ""});
-  }
+  Surface out = Assembly(asset, std::move(soup), report).run();
+  leave_out_points(out, report);
+  note_repairs(unused, report);
   return out;
 }
 

@@ -149,7 +149,7 @@ TEST_CASE("mixed windings are turned and said so") {
   for (std::size_t t = 0; t < m.triangles.size(); t += 3) std::swap(m.triangles[t][0], m.triangles[t][1]);
   const Result result = run(glb_of(m));
   CHECK(result.report.certificate.valid);
-  CHECK(result.report.turned_triangles == (m.triangles.size() + 2) / 3);
+  CHECK(result.report.repairs.turned_triangles == (m.triangles.size() + 2) / 3);
 }
 
 TEST_CASE("an uploaded cube map shows up in the atlas, and a missing face is named") {
