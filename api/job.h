@@ -75,6 +75,7 @@ struct Job {
   std::optional<std::uint64_t> queue_position; // 1 is next; only while queued
   std::uint32_t attempt = 0;                   // how often it was started
   bool cached = false;
+  bool partial = false; // a component of the model could not be parametrized; the report says which and why
   std::optional<JobProgress> progress;
   Timing timing;
   Options options;

@@ -149,6 +149,7 @@ Json to_json(const Job& job) {
             {"queue_position", optional_value(job.queue_position)},
             {"attempt", job.attempt},
             {"cached", job.cached},
+            {"partial", job.partial},
             {"progress", job.progress ? to_json(*job.progress) : Json(nullptr)},
             {"timing", to_json(job.timing)},
             {"options", to_json(job.options)},

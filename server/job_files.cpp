@@ -51,6 +51,7 @@ void take_results(StoredJob& stored, const JobOutcome& outcome, const std::files
     const Json json = Json::parse(read_file(report, max_report_bytes));
     stored.job.timing.stages = api::timing_from_json(json.at("timing")).stages;
     stored.job.input.triangles = json.at("input").at("triangles").get<std::uint64_t>();
+    json.at("partial").get_to(stored.job.partial);
   } catch (const Json::exception&) {
     throw Error(ErrorCode::internal, "the job's report is unreadable");
   }

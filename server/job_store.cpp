@@ -65,6 +65,7 @@ Json document_of(const StoredJob& stored) {
           {"timing", api::to_json(job.timing)},
           {"sha256", job.input.sha256},
           {"bytes", job.input.bytes},
+          {"partial", job.partial},
           {"triangles", job.input.triangles ? Json(*job.input.triangles) : Json(nullptr)},
           {"problem", job.problem ? api::to_json(*job.problem) : Json(nullptr)},
           {"fingerprint", stored.fingerprint},
@@ -87,6 +88,7 @@ StoredJob stored_job(const Json& json) {
   json.at("sha256").get_to(job.input.sha256);
   json.at("bytes").get_to(job.input.bytes);
   if (!json.at("triangles").is_null()) job.input.triangles = json.at("triangles").get<std::uint64_t>();
+  job.partial = json.value("partial", false); // of a later version than the first stores
   if (!json.at("problem").is_null()) job.problem = api::problem_from_json(json.at("problem"));
   json.at("fingerprint").get_to(stored.fingerprint);
   for (const Json& input : json.at("inputs")) {

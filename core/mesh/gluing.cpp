@@ -1,8 +1,14 @@
 #include "core/mesh/gluing.h"
 
+#include <algorithm>
+
 #include "core/mesh/edges.h"
 
 namespace orbis::mesh {
+
+bool have_same_points(const Triangle& s, const Triangle& t) {
+  return std::ranges::all_of(s, [&](Index v) { return v == t[0] || v == t[1] || v == t[2]; });
+}
 
 GluedSoup glue_pairs(std::span<const Triangle> triangles, std::size_t points) {
   GluedSoup out;
@@ -10,7 +16,10 @@ GluedSoup glue_pairs(std::span<const Triangle> triangles, std::size_t points) {
   out.gluing.twin.assign(3 * triangles.size(), open_edge);
   const EdgeTable edges(triangles, points);
   edges.for_each([&](Index, Index, std::span<const EdgeSide> sides) {
-    if (sides.size() == 2) out.gluing.glue(sides[0].half_edge, sides[1].half_edge);
+    if (sides.size() == 2) {
+      const std::uint32_t g = sides[0].half_edge, h = sides[1].half_edge;
+      if (!have_same_points(triangles[g / 3], triangles[h / 3])) out.gluing.glue(g, h);
+    }
     if (sides.size() < 3) return;
     out.shared.emplace_back();
     for (const EdgeSide& side : sides) out.shared.back().push_back(side.half_edge);

@@ -47,7 +47,10 @@ public:
   void glue() {
     std::vector<Candidate> candidates;
     for (const Side& u : up_) {
-      for (const Side& d : down_) candidates.push_back(candidate(u, d));
+      for (const Side& d : down_) {
+        const Triangle &s = gluing_.triangles[u.half_edge / 3], &t = gluing_.triangles[d.half_edge / 3];
+        if (!have_same_points(s, t)) candidates.push_back(candidate(u, d));
+      }
     }
     std::sort(candidates.begin(), candidates.end());
     for (const Candidate& c : candidates) {

@@ -10,8 +10,9 @@ namespace orbis::mesh {
 
 // Glues the sides of shared edges two by two, one up and one down each: first those whose triangles share the input's
 // vertices there, then the flattest continuation, so that a wall that meets a floor does not tear the floor apart; of
-// equally flat ones the pair that encloses less, so that two cubes with a common edge are two cubes. What finds no
-// partner stays open. Edges of more than 64 sides stay open altogether.
+// equally flat ones the pair that encloses less, so that two cubes with a common edge are two cubes. The two sides of
+// one sheet are not glued to each other. What finds no partner stays open. Edges of more than 64 sides stay open
+// altogether.
 //   positions  of the points
 //   corners    for each triangle its three vertices in the input, in the order of the gluing's points
 // Requires an oriented gluing.

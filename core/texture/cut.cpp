@@ -118,12 +118,14 @@ public:
       : mesh_(mesh), layout_(layout), given_points_(given_points), at_input_(input_vertices, none),
         at_added_(points - given_points, none) {}
 
-  // a, b: the input vertices at the ends of the edge that the point lies on (equal at a corner and inside).
+  // a, b: the input vertices at the ends of the edge that the point lies on (equal at a corner and inside). One input
+  // vertex can be two points: where the surface was cut open.
   Index vertex(const CutVertex& v, Face face, Index a, Index b) {
     if (a > b) std::swap(a, b);
     std::uint32_t& first = v.point < given_points_ ? at_input_[a] : at_added_[v.point - given_points_];
     for (std::uint32_t i = first; i != none; i = copies_[i].next)
-      if (copies_[i].face == face && copies_[i].a == a && copies_[i].b == b) return i;
+      if (copies_[i].face == face && copies_[i].a == a && copies_[i].b == b && mesh_.vertices[i].point == v.point)
+        return i;
     const auto made = static_cast<Index>(mesh_.vertices.size());
     mesh_.vertices.push_back(v);
     mesh_.vertices.back().uv = uv_of(v.sphere, face);

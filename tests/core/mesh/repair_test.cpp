@@ -172,19 +172,20 @@ TEST_CASE("a wall in a body is a piece of its own, and told") {
   CHECK(r.counts.internal_triangles == 2);
 }
 
-TEST_CASE("a sheet with two sides comes out whole, whichever way its sides are cut into triangles") {
-  TriangleMesh sheet = shapes::terrain(4, 3);
-  const std::size_t front = sheet.triangles.size();
-  for (std::size_t t = 0; t < front; ++t) {
-    const Triangle s = sheet.triangles[t];
-    sheet.triangles.push_back({s[0], s[2], s[1]});
+TEST_CASE("a sheet with two sides is two sheets, and without volume but cut otherwise on its back it is one body") {
+  for (TriangleMesh sheet : {shapes::terrain(4, 3), shapes::terrain(1, 1)}) {
+    const std::size_t front = sheet.triangles.size();
+    for (std::size_t t = 0; t < front; ++t) {
+      const Triangle s = sheet.triangles[t];
+      sheet.triangles.push_back({s[0], s[2], s[1]});
+    }
+    const Repaired r = repaired(sheet);
+    REQUIRE(r.pieces.size() == 2);
+    CHECK(r.pieces[0].soup_triangles == front);
+    CHECK(r.pieces[1].boundary_loops == 1);
   }
-  CHECK_FALSE(repaired(sheet).pieces.empty());
-  TriangleMesh quad = shapes::terrain(1, 1); // two triangles on each side, with the same diagonal: four loose triangles
-  quad.triangles.insert(quad.triangles.end(), {{0, 3, 2}, {0, 1, 3}});
-  CHECK_FALSE(repaired(quad).pieces.empty());
-  quad.triangles = {
-      {0, 2, 3}, {0, 3, 1}, {0, 1, 2}, {1, 3, 2}}; // with the other diagonal: a tetrahedron without volume
+  TriangleMesh quad = shapes::terrain(1, 1);
+  quad.triangles = {{0, 2, 3}, {0, 3, 1}, {0, 1, 2}, {1, 3, 2}}; // the other diagonal on its back: a flat tetrahedron
   const Repaired flat = repaired(quad);
   REQUIRE(flat.pieces.size() == 1);
   CHECK(flat.pieces[0].boundary_loops == 0);

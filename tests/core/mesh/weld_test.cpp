@@ -61,3 +61,19 @@ TEST_CASE("kept indices leave coincident vertices apart") {
   CHECK(mesh::keep_indices(m.positions, m.triangles).mesh.positions.size() == m.positions.size());
   CHECK(mesh::weld(m.positions, m.triangles).mesh.positions.size() == m.positions.size() - 1);
 }
+
+TEST_CASE("within a tolerance vertices go to the nearest one before them, and chains do not form") {
+  const std::vector<Vec3f> positions{{0, 0, 0}, {0.9F, 0, 0}, {1.8F, 0, 0}, {0, 5, 0}, {0, 0, -0.5F}};
+  const std::vector<Triangle> triangles{{0, 2, 3}, {1, 3, 2}, {4, 2, 3}};
+  const mesh::Welded w = mesh::weld_within(positions, triangles, 1.0);
+  CHECK(w.vertex_of == std::vector<mesh::Index>{0, 0, 1, 2, 0});
+  CHECK(w.mesh.positions[0] == positions[0]);
+}
+
+TEST_CASE("a jittered soup is restored within a tolerance above the jitter") {
+  const mesh::TriangleMesh m = shapes::bumpy_sphere(4);
+  mesh::TriangleMesh soup = soup_of(m);
+  for (std::size_t v = 0; v < soup.positions.size(); ++v) soup.positions[v].y += 1e-5F * static_cast<float>(v % 7);
+  CHECK_FALSE(mesh::classify(mesh::weld(soup.positions, soup.triangles).mesh).is_sphere());
+  CHECK(mesh::classify(mesh::weld_within(soup.positions, soup.triangles, 1e-3).mesh).is_sphere());
+}

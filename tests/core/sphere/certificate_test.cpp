@@ -129,3 +129,16 @@ TEST_CASE("grid points survive the way through float") {
     CHECK(p == q);
   }
 }
+
+TEST_CASE("pieces without their cap are certified together with the cap's solid angle, and not without") {
+  const auto m = shapes::sphere(3);
+  const std::vector<Vec3f> points = on_grid(m);
+  const auto pieces = std::span(m.triangles).subspan(5), cap = std::span(m.triangles).first(5);
+  const double missing = sphere::solid_angle_of(points, cap);
+  CHECK(missing > 0);
+  CHECK(sphere::certify_pieces(points, pieces, missing).valid);
+  CHECK_FALSE(sphere::certify_pieces(points, pieces, 4 * std::numbers::pi).valid);
+  std::vector<mesh::Triangle> twice(pieces.begin(), pieces.end());
+  twice.push_back(twice.front());
+  CHECK_FALSE(sphere::certify_pieces(points, twice, missing).valid);
+}
