@@ -10,19 +10,30 @@ bool have_same_points(const Triangle& s, const Triangle& t) {
   return std::ranges::all_of(s, [&](Index v) { return v == t[0] || v == t[1] || v == t[2]; });
 }
 
+namespace {
+
+bool is_shared(std::span<const Triangle> triangles, std::span<const EdgeSide> sides) {
+  return sides.size() > 2 ||
+         (sides.size() == 2 && have_same_points(triangles[sides[0].half_edge / 3], triangles[sides[1].half_edge / 3]));
+}
+
+void append(std::span<const EdgeSide> sides, SharedEdges& out) {
+  out.emplace_back();
+  for (const EdgeSide& side : sides) out.back().push_back(side.half_edge);
+}
+
+} // namespace
+
 GluedSoup glue_pairs(std::span<const Triangle> triangles, std::size_t points) {
   GluedSoup out;
   out.gluing.triangles.assign(triangles.begin(), triangles.end());
   out.gluing.twin.assign(3 * triangles.size(), open_edge);
-  const EdgeTable edges(triangles, points);
-  edges.for_each([&](Index, Index, std::span<const EdgeSide> sides) {
-    if (sides.size() == 2) {
-      const std::uint32_t g = sides[0].half_edge, h = sides[1].half_edge;
-      if (!have_same_points(triangles[g / 3], triangles[h / 3])) out.gluing.glue(g, h);
+  EdgeTable(triangles, points).for_each([&](Index, Index, std::span<const EdgeSide> sides) {
+    if (is_shared(triangles, sides)) {
+      append(sides, out.shared);
+    } else if (sides.size() == 2) {
+      out.gluing.glue(sides[0].half_edge, sides[1].half_edge);
     }
-    if (sides.size() < 3) return;
-    out.shared.emplace_back();
-    for (const EdgeSide& side : sides) out.shared.back().push_back(side.half_edge);
   });
   return out;
 }
@@ -30,9 +41,7 @@ GluedSoup glue_pairs(std::span<const Triangle> triangles, std::size_t points) {
 SharedEdges shared_edges(std::span<const Triangle> triangles, std::size_t points) {
   SharedEdges out;
   EdgeTable(triangles, points).for_each([&](Index, Index, std::span<const EdgeSide> sides) {
-    if (sides.size() < 3) return;
-    out.emplace_back();
-    for (const EdgeSide& side : sides) out.back().push_back(side.half_edge);
+    if (is_shared(triangles, sides)) append(sides, out);
   });
   return out;
 }

@@ -39,16 +39,15 @@ struct Gluing {
   }
 };
 
-// The sides of edges that more than two triangles share, edge by edge.
+// The sides of edges that more than two triangles share, or two with the same points; edge by edge.
 using SharedEdges = std::vector<std::vector<std::uint32_t>>;
 
 // Do two triangles have the same three points? They are then the two sides of one sheet, or one of them is a duplicate:
 // never neighbours.
 [[nodiscard]] bool have_same_points(const Triangle& s, const Triangle& t);
 
-// Glues every two half-edges that share their edge with no other, whichever way they run, unless they are of triangles
-// with the same points; edges of more sides stay open and are returned. triangles: of points, no point twice in a
-// triangle.
+// Glues every two half-edges that share their edge with no other, whichever way they run; shared edges stay open and
+// are returned. triangles: of points, no point twice in a triangle.
 struct GluedSoup {
   Gluing gluing;
   SharedEdges shared;

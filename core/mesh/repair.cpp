@@ -28,7 +28,8 @@ public:
     GluedSoup glued = glue_pairs(triangles, positions.size());
     gluing_ = std::move(glued.gluing);
     shared_ = std::move(glued.shared);
-    out_.counts.shared_edges = shared_.size();
+    out_.counts.shared_edges = static_cast<std::uint64_t>(
+        std::ranges::count_if(shared_, [](const std::vector<std::uint32_t>& sides) { return sides.size() > 2; }));
     Orientation orientation = orient(positions, gluing_);
     out_.turned = std::move(orientation.turned);
     out_.counts.one_sided_edges = orientation.cut_edges;

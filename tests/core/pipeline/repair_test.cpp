@@ -141,7 +141,7 @@ TEST_CASE("a duplicate of another material is a surface of its own, one of the s
   const auto glb_with = [](const char* materials) {
     GlbOfMesh glb;
     nlohmann::json attributes;
-    const mesh::TriangleMesh m = shapes::sphere(1);
+    const mesh::TriangleMesh m = shapes::terrain(3, 2, 1);
     attributes["POSITION"] = glb.add_positions(m.positions);
     const std::size_t indices = glb.add_indices(m.triangles);
     glb.document()["materials"] = nlohmann::json::parse("[{}, {}]");
@@ -156,7 +156,7 @@ TEST_CASE("a duplicate of another material is a surface of its own, one of the s
   CHECK(different.report.components.size() == 2);
   CHECK(different.report.repairs.duplicate_triangles == 0);
   CHECK(same.report.components.size() == 1);
-  CHECK(same.report.repairs.duplicate_triangles == shapes::sphere(1).triangles.size());
+  CHECK(same.report.repairs.duplicate_triangles == shapes::terrain(3, 2).triangles.size());
   const asset::Asset out = asset::read_asset(same.glb, {}, {});
   REQUIRE(out.primitives.size() == 2);
   CHECK(out.primitives[0].indices.size() == out.primitives[1].indices.size());
@@ -186,6 +186,8 @@ TEST_CASE("a component without extent is told, and the rest comes back") {
 TEST_CASE("topology=strict refuses what would have to be repaired, and takes what would not") {
   CHECK_THROWS_WITH_AS(static_cast<void>(run(glb_of(shapes::torus(10, 6)), with("topology", "strict"))),
                        doctest::Contains("genus 1"), Error);
+  CHECK_THROWS_WITH_AS(static_cast<void>(run(glb_of(shapes::disk(2, 7)), with("topology", "strict"))),
+                       doctest::Contains("1 boundary loop"), Error);
   CHECK(run(glb_of(shapes::bumpy_sphere(2)), with("topology", "strict")).report.certificate.valid);
 }
 
