@@ -107,8 +107,9 @@ Json components_json(const std::vector<ComponentReport>& components) {
 }
 
 Json atlas_json(const Report::Atlas& a) {
-  return {{"width", a.width},
-          {"height", a.height},
+  Json pages = Json::array();
+  for (const Report::Atlas::Page& page : a.pages) pages.push_back({{"width", page.width}, {"height", page.height}});
+  return {{"pages", std::move(pages)},
           {"gutter", a.gutter},
           {"charts", a.charts},
           {"cut_triangles", a.cut_triangles},

@@ -10,7 +10,7 @@
 namespace orbis {
 namespace {
 
-constexpr std::array<OptionInfo, 13> table{{
+constexpr std::array<OptionInfo, 14> table{{
     {"topology", "repair | strict", "repair",
      "repair: whatever has triangles is parametrized; strict: anything but one closed component of genus 0 is refused"},
     {"weld_tolerance", "a number, 0 or more", "0",
@@ -26,7 +26,9 @@ constexpr std::array<OptionInfo, 13> table{{
      "shape-preserving only: relaxation stops when the best local improvement is above this"},
     {"texture", "auto | pattern | cubemap | base_color", "auto",
      "what the atlas shows: the model's own base colour where it has one, else a numbered test pattern"},
-    {"texture_size", "64 to 8192", "2048", "width of the atlas in texels"},
+    {"texture_size", "64 to 8192", "2048", "width of the atlas' largest image in texels"},
+    {"atlas", "per-material | single", "per-material",
+     "an image for each material (those that meet on one component share theirs), or one for the file"},
     {"texture_format", "png | jpeg", "png", "how the atlas is stored in the result"},
     {"jpeg_quality", "1 to 100", "90", "with texture_format=jpeg"},
     {"compression", "none | draco", "none", "how the geometry is stored in the result"},
@@ -69,6 +71,7 @@ E choice(std::string_view name, std::string_view text, const std::array<std::str
 constexpr std::array<std::string_view, 4> objectives{"isometric", "conformal", "stretch", "shape-preserving"};
 constexpr std::array<std::string_view, 3> qualities{"draft", "standard", "high"};
 constexpr std::array<std::string_view, 4> sources{"auto", "pattern", "cubemap", "base_color"};
+constexpr std::array<std::string_view, 2> pages{"per-material", "single"};
 constexpr std::array<std::string_view, 2> formats{"png", "jpeg"};
 constexpr std::array<std::string_view, 2> topologies{"repair", "strict"};
 constexpr std::array<std::string_view, 2> compressions{"none", "draco"};
@@ -151,6 +154,8 @@ void set_option(Options& options, std::string_view name, std::string_view value)
     options.texture = choice<TextureSource>(name, value, sources);
   } else if (name == "texture_size") {
     options.texture_size = number<std::uint32_t>(name, value, 64, 8192);
+  } else if (name == "atlas") {
+    options.atlas = choice<AtlasPages>(name, value, pages);
   } else if (name == "texture_format") {
     options.texture_format = choice<TextureFormat>(name, value, formats);
   } else if (name == "jpeg_quality") {
@@ -175,6 +180,7 @@ std::string get_option(const Options& options, std::string_view name) {
   if (name == "threshold") return text_of(options.threshold);
   if (name == "texture") return text_of(options.texture, sources);
   if (name == "texture_size") return std::to_string(options.texture_size);
+  if (name == "atlas") return text_of(options.atlas, pages);
   if (name == "texture_format") return text_of(options.texture_format, formats);
   if (name == "jpeg_quality") return std::to_string(options.jpeg_quality);
   if (name == "compression") return text_of(options.compression, compressions);

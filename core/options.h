@@ -14,6 +14,7 @@ enum class Objective { isometric, conformal, stretch, shape_preserving };
 enum class Quality { draft, standard, high };
 enum class TextureSource { automatic, pattern, cubemap, base_color };
 enum class TextureFormat { png, jpeg };
+enum class AtlasPages { per_material, single };
 enum class Compression { none, draco };
 enum class TopologyPolicy { repair, strict };
 
@@ -40,7 +41,10 @@ struct Options {
   double threshold = 0.995;
   // automatic: the model's own base colour where it has one that came with the request, else the test pattern.
   TextureSource texture = TextureSource::automatic;
-  std::uint32_t texture_size = 2048; // width of the atlas in texels, 64 to 8192
+  std::uint32_t texture_size = 2048; // width of the largest page in texels, 64 to 8192
+  // per_material: each material keeps an image of its own, as in the input, so that its factors, alpha mode and
+  // samplers go on meaning what they meant and what is not drawn need not be loaded. single: one image for the file.
+  AtlasPages atlas = AtlasPages::per_material;
   TextureFormat texture_format = TextureFormat::png;
   std::uint32_t jpeg_quality = 90; // 1 to 100
   Compression compression = Compression::none;

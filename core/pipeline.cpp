@@ -6,8 +6,8 @@
 #include "core/asset/image_codec.h"
 #include "core/steps/delivery.h"
 #include "core/steps/dump.h"
-#include "core/steps/levels.h"
 #include "core/steps/embed.h"
+#include "core/steps/levels.h"
 #include "core/steps/measure.h"
 #include "core/steps/paint.h"
 #include "core/steps/snap_and_cut.h"
@@ -50,28 +50,26 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
 
   std::vector<Vec3d> points = embed(surface, request.options, clock, report);
 
-  const texture::AtlasLayout layout = texture::layout_for(request.options.texture_size);
   clock.report(Stage::atlas, 0, 1);
-  const CutSphere sphere = snap_and_cut(surface, points, layout, clock, report);
+  const CutSphere sphere = snap_and_cut(asset, surface, points, request.options, clock, report);
   const std::vector<Vec3f> delivered = deliverable(sphere.points);
   report.distortion = measure(surface, delivered, report);
   const Delivery delivery = make_delivery(asset, surface, sphere.cut);
   dump_mesh(dump, "2-sphere.obj", delivered, surface.mesh.triangles);
-  dump_charts(dump, "3-charts.obj", sphere.cut, layout);
+  dump_charts(dump, "3-charts.obj", sphere.cut);
 
   clock.report(Stage::bake, 0, 1);
-  const texture::Image atlas = paint(request, limits, asset, surface, sphere.cut, delivery, layout, clock, report);
-  result.preview_png = preview(surface, sphere.cut, atlas);
+  const std::vector<texture::Image> pages = paint(request, limits, asset, surface, sphere.cut, delivery, clock, report);
+  result.preview_png = preview(surface, sphere.cut, pages);
 
   clock.report(Stage::levels, 0, 1);
-  const std::vector<DetailLevel> levels = make_levels(
-      asset, surface, sphere.cut, static_cast<double>(layout.gutter) / layout.width, clock, report);
+  const std::vector<DetailLevel> levels = make_levels(asset, surface, sphere.cut, clock, report);
 
   clock.report(Stage::encode, 0, 1);
-  result.atlas_png = asset::encode_png(atlas);
+  result.atlas_png = asset::encode_png(pages.front());
   dump_bytes(dump, "4-atlas.png", result.atlas_png);
   dump_bytes(dump, "5-preview.png", result.preview_png);
-  result.glb = asset::write_asset(asset, delivery.primitives, encode_atlas(atlas, result.atlas_png, request.options),
+  result.glb = asset::write_asset(asset, delivery.primitives, encode_atlas(pages, result.atlas_png, request.options),
                                   extras_of(report), request.options.compression, in_asset(levels, report));
 
   clock.report(Stage::certify, 0, 1);

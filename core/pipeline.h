@@ -25,7 +25,7 @@ struct Request {
 
 struct Result {
   std::vector<std::byte> glb;
-  std::vector<std::byte> atlas_png, preview_png; // pictures to look at
+  std::vector<std::byte> atlas_png, preview_png; // pictures to look at: the first page of the atlas; sphere and model
   Report report;
 };
 

@@ -67,7 +67,11 @@ struct Report {
   bool converged = true;
   sphere::Distortion distortion;
   struct Atlas {
-    std::uint32_t width = 0, height = 0, gutter = 0;
+    struct Page {
+      std::uint32_t width = 0, height = 0; // texels
+    };
+    std::vector<Page> pages;
+    std::uint32_t gutter = 0;
     std::uint64_t charts = 0, cut_triangles = 0, added_vertices = 0;
     double utilisation = 0; // texels covered by charts / all texels
     std::string source;     // "pattern", "cubemap", "base_color"

@@ -100,6 +100,7 @@ struct NewPrimitive {
   std::vector<Attribute> attributes; // with TEXCOORD_n of the atlas and _SPHERE
   std::vector<std::vector<Attribute>> targets;
   std::uint32_t atlas_texcoord = 0; // n
+  std::uint32_t atlas_page = 0;     // which of the atlas' images it shows
 };
 
 // A coarser version of the new primitives.
@@ -114,15 +115,15 @@ struct NewImage {
 };
 
 // Writes the GLB: the document as it came (nodes, names, materials, skins, animations, cameras, extras, unknown
-// extensions), with primitive i of `asset` replaced by primitives[i], base colour textures by `atlas` on the
-// atlas' TEXCOORD set, and `extras_json` (a JSON object as text) under asset.extras.orbis. A raw Draco input becomes a
-// document with one node, mesh and material. Materials that other primitives use too are cloned, not changed.
+// extensions), with primitive i of `asset` replaced by primitives[i], base colour textures by its page of `atlas` on
+// the atlas' TEXCOORD set, and `extras_json` (a JSON object as text) under asset.extras.orbis. A raw Draco input
+// becomes a document with one node, mesh and material. Materials that other primitives use too are cloned, not changed.
 // Buffers hold only what is still referenced. Same input, same bytes.
 // With Compression::draco the new primitives are written with KHR_draco_mesh_compression, positions and _SPHERE
 // lossless (the sphere coordinates must not be quantised: they would fold). Levels of detail are added as MSFT_lod
 // (levels.h), their meshes behind the document's, level by level.
-[[nodiscard]] Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, const NewImage& atlas,
-                                std::string_view extras_json, Compression compression,
+[[nodiscard]] Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives,
+                                std::span<const NewImage> atlas, std::string_view extras_json, Compression compression,
                                 std::span<const NewLevel> levels = {});
 
 } // namespace orbis::asset

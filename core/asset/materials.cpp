@@ -52,10 +52,9 @@ std::string mesh_name(const Json& mesh, std::size_t number) {
 // Numbers, not pointers, name the parts of the document: a key that is added moves all others.
 class AtlasMaterials {
 public:
-  AtlasMaterials(Json& document, std::size_t texture, const std::vector<AtlasUser>& users)
-      : document_(document), texture_(texture) {
+  AtlasMaterials(Json& document, const std::vector<AtlasUser>& users) : document_(document) {
     if (!find(document_, "materials")) document_["materials"] = Json::array();
-    for (const AtlasUser& user : users) texcoord_of_[{user.mesh, user.primitive}] = user.texcoord;
+    for (const AtlasUser& user : users) shown_by_[{user.mesh, user.primitive}] = {user.texcoord, user.texture};
     find_shared();
   }
 
@@ -72,16 +71,19 @@ public:
   }
 
 private:
-  // A material may be changed in place if all who use it show the atlas with one and the same texture coordinates.
+  // What a primitive shows: a texture by some texture coordinates.
+  using Shown = std::pair<std::uint32_t, std::size_t>;
+
+  // A material may be changed in place if all who use it show the same page with the same texture coordinates.
   void find_shared() {
-    std::map<std::size_t, std::uint32_t> texcoord; // of the first user of each material
+    std::map<std::size_t, Shown> first; // by the first user of each material
     Json& meshes = document_["meshes"];
     for (std::size_t m = 0; m < meshes.size(); ++m) {
       Json& primitives = meshes[m]["primitives"];
       for (std::size_t p = 0; p < primitives.size(); ++p) {
         const std::size_t own = material_of(primitives[p]);
-        const auto user = texcoord_of_.find({m, p});
-        if (user == texcoord_of_.end() || texcoord.try_emplace(own, user->second).first->second != user->second) {
+        const auto user = shown_by_.find({m, p});
+        if (user == shown_by_.end() || first.try_emplace(own, user->second).first->second != user->second) {
           shared_.insert(own);
         }
         share_variants(primitives[p], own);
@@ -99,7 +101,7 @@ private:
 
   std::size_t replacement(std::size_t material, const AtlasUser& user) {
     // Primitives without a material share one for each mesh.
-    const std::tuple key{material, material == no_material ? user.mesh : 0, user.texcoord};
+    const std::tuple key{material, material == no_material ? user.mesh : 0, user.texcoord, user.texture};
     if (const auto known = replacements_.find(key); known != replacements_.end()) return known->second;
     Json& materials = document_["materials"];
     std::size_t number = material;
@@ -111,16 +113,15 @@ private:
       number = materials.size();
       materials.push_back(Json(materials[material]));
     }
-    show_atlas(materials[number], texture_, user.texcoord);
+    show_atlas(materials[number], user.texture, user.texcoord);
     replacements_.emplace(key, number);
     return number;
   }
 
   Json& document_;
-  std::size_t texture_;
-  std::map<std::pair<std::size_t, std::size_t>, std::uint32_t> texcoord_of_;
+  std::map<std::pair<std::size_t, std::size_t>, Shown> shown_by_; // by mesh and primitive
   std::set<std::size_t> shared_;
-  std::map<std::tuple<std::size_t, std::size_t, std::uint32_t>, std::size_t> replacements_;
+  std::map<std::tuple<std::size_t, std::size_t, std::uint32_t, std::size_t>, std::size_t> replacements_;
 };
 
 } // namespace
@@ -131,8 +132,8 @@ const Json* base_color_texture(const Json& material) {
   return info && info->is_object() ? info : nullptr;
 }
 
-void assign_atlas(Json& document, std::size_t texture, const std::vector<AtlasUser>& users) {
-  AtlasMaterials materials(document, texture, users);
+void assign_atlas(Json& document, const std::vector<AtlasUser>& users) {
+  AtlasMaterials materials(document, users);
   for (const AtlasUser& user : users) materials.assign(user);
 }
 

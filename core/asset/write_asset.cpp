@@ -44,14 +44,14 @@ void write_geometry(Output& out, Json& primitive, const NewPrimitive& source, Co
 }
 
 // What a caller must not hand over, since no valid document could hold it.
-void check_new_primitive(const NewPrimitive& primitive) {
+void check_new_primitive(const NewPrimitive& primitive, std::size_t pages) {
   const auto all_have = [](const std::vector<Attribute>& attributes, std::size_t count) {
     return std::all_of(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.count() == count; });
   };
   const std::size_t vertices = primitive.attributes.empty() ? 0 : primitive.attributes.front().count();
   const std::string atlas = "TEXCOORD_" + std::to_string(primitive.atlas_texcoord);
   const bool is_sound =
-      all_have(primitive.attributes, vertices) && primitive.indices.size() % 3 == 0 &&
+      primitive.atlas_page < pages && all_have(primitive.attributes, vertices) && primitive.indices.size() % 3 == 0 &&
       std::all_of(primitive.targets.begin(), primitive.targets.end(),
                   [&](const auto& target) { return all_have(target, vertices); }) &&
       std::all_of(primitive.indices.begin(), primitive.indices.end(), [&](std::uint32_t i) { return i < vertices; }) &&
@@ -90,14 +90,19 @@ template <class T> std::size_t append(Json& json, const char* array, T item) {
   return json[array].size() - 1;
 }
 
-// The atlas as a texture: trilinear, and clamped since its charts touch no border.
-std::size_t add_atlas(Output& out, const NewImage& atlas) {
-  const std::size_t view = out.add_view(atlas.bytes);
-  const std::size_t image =
-      append(out.json, "images", Json{{"name", "atlas"}, {"mimeType", atlas.mime_type}, {"bufferView", view}});
+// The pages of the atlas as textures: trilinear, and clamped since charts may touch a page's border.
+std::vector<std::size_t> add_atlas(Output& out, std::span<const NewImage> pages) {
   const std::size_t sampler =
       append(out.json, "samplers", Json{{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 33071}, {"wrapT", 33071}});
-  return append(out.json, "textures", Json{{"name", "atlas"}, {"sampler", sampler}, {"source", image}});
+  std::vector<std::size_t> textures;
+  for (const NewImage& page : pages) {
+    const std::string name = pages.size() == 1 ? "atlas" : "atlas " + std::to_string(textures.size());
+    const std::size_t view = out.add_view(page.bytes);
+    const std::size_t image =
+        append(out.json, "images", Json{{"name", name}, {"mimeType", page.mime_type}, {"bufferView", view}});
+    textures.push_back(append(out.json, "textures", Json{{"name", name}, {"sampler", sampler}, {"source", image}}));
+  }
+  return textures;
 }
 
 // A GLB holds its images; a URI stays only where the image did not come, or is in a format that has no media type in
@@ -207,7 +212,7 @@ void drop_dead_channels(Json& json, const Json& before) {
 
 } // namespace
 
-Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, const NewImage& atlas,
+Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, std::span<const NewImage> atlas,
                   std::string_view extras_json, Compression compression, std::span<const NewLevel> levels) {
   if (primitives.size() != asset.primitives.size()) {
     throw Error(ErrorCode::internal, "there must be one new primitive for each of the asset's");
@@ -216,17 +221,21 @@ Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, 
   Output out(document);
   embed_images(out, document);
   std::vector<AtlasUser> users;
+  std::vector<std::uint32_t> pages; // of the users
   for (std::size_t i = 0; i < primitives.size(); ++i) {
     const Primitive& old = asset.primitives[i];
     if (primitives[i].indices.empty()) continue;
-    check_new_primitive(primitives[i]);
+    check_new_primitive(primitives[i], atlas.size());
     replace_primitive(out, old, primitives[i], compression);
-    users.push_back({old.mesh, old.primitive, primitives[i].atlas_texcoord});
+    users.push_back({old.mesh, old.primitive, primitives[i].atlas_texcoord, 0});
+    pages.push_back(primitives[i].atlas_page);
   }
-  assign_atlas(out.json, add_atlas(out, atlas), users);
+  const std::vector<std::size_t> textures = add_atlas(out, atlas);
+  for (std::size_t i = 0; i < users.size(); ++i) users[i].texture = textures[pages[i]];
+  assign_atlas(out.json, users);
   for (const NewLevel& level : levels)
     for (const NewPrimitive& primitive : level.primitives)
-      if (!primitive.indices.empty()) check_new_primitive(primitive);
+      if (!primitive.indices.empty()) check_new_primitive(primitive, atlas.size());
   add_levels(out, asset, primitives, levels, [&](const Json& base, const NewPrimitive& geometry) {
     return with_geometry(out, base, geometry, compression);
   });

@@ -5,6 +5,9 @@ namespace orbis::lod {
 Level extract(const FullSurface& full, const WedgeMesh& mesh) {
   Level level;
   texture::CutMesh& out = level.mesh;
+  out.charts = full.cut().charts;
+  out.pages = full.cut().pages;
+  out.gutter = full.cut().gutter;
   std::vector<std::uint32_t> number(mesh.wedges.size(), none), point_number(mesh.points.size(), none);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     if (!mesh.is_alive[t]) continue;
@@ -26,7 +29,7 @@ Level extract(const FullSurface& full, const WedgeMesh& mesh) {
     out.triangles.push_back(triangle);
     level.regions.push_back(mesh.wedges[mesh.triangles[t][0]].region);
     out.parent.push_back(mesh.parent[t]);
-    out.face.push_back(full.cut().face[t]);
+    out.chart.push_back(full.cut().chart[t]);
   }
   return level;
 }

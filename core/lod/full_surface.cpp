@@ -51,7 +51,7 @@ void FullSurface::number_regions(std::span<const std::uint32_t> primitive_of) {
   for (const std::uint32_t p : primitive_of) primitives = std::max(primitives, p + 1);
   regions_.reserve(cut_.triangles.size());
   for (std::size_t t = 0; t < cut_.triangles.size(); ++t)
-    regions_.push_back(cut_.face[t] * primitives + primitive_of[cut_.parent[t]]);
+    regions_.push_back(cut_.chart[t] * primitives + primitive_of[cut_.parent[t]]);
 }
 
 Vec3d FullSurface::position(const Place& place) const {

@@ -44,6 +44,7 @@ public:
         if (!seen_[v]) add(v, primitive);
         out_.primitives[primitive].indices.push_back(out_.of_cut_vertex[v].vertex);
       }
+      out_.primitives[primitive].atlas_page = cut_.page_of(t);
     }
     return std::move(out_);
   }

@@ -36,12 +36,20 @@ void dump_mesh(const StageDump& dump, std::string_view name, std::span<const Vec
   dump(name, std::as_bytes(std::span(text)));
 }
 
-void dump_charts(const StageDump& dump, std::string_view name, const texture::CutMesh& cut,
-                 const texture::AtlasLayout& layout) {
+void dump_charts(const StageDump& dump, std::string_view name, const texture::CutMesh& cut) {
   if (!dump) return;
+  std::vector<double> left{0}; // of a page
+  for (const texture::Page& page : cut.pages) left.push_back(left.back() + page.width);
+  std::vector<std::uint32_t> page_of(cut.vertices.size());
+  for (std::size_t t = 0; t < cut.triangles.size(); ++t) {
+    for (const mesh::Index v : cut.triangles[t]) page_of[v] = cut.page_of(t);
+  }
   std::string text;
-  for (const texture::CutVertex& v : cut.vertices) {
-    add_line(text, "v %.9g %.9g %.9g\n", double{v.uv.x} * layout.width, (1 - double{v.uv.y}) * layout.height, 0);
+  for (std::size_t v = 0; v < cut.vertices.size(); ++v) {
+    const texture::Page& page = cut.pages[page_of[v]];
+    const Vec2f& uv = cut.vertices[v].uv;
+    add_line(text, "v %.9g %.9g %.9g\n", left[page_of[v]] + double{uv.x} * page.width, (1 - double{uv.y}) * page.height,
+             0);
   }
   add_triangles(text, cut.triangles);
   dump(name, std::as_bytes(std::span(text)));

@@ -86,6 +86,15 @@ void place(const lod::Level& level, Delivery& delivery) {
   }
 }
 
+std::uint32_t widest_page(const texture::CutMesh& cut) {
+  std::uint32_t widest = 1;
+  for (const texture::Page& page : cut.pages) widest = std::max(widest, page.width);
+  return widest;
+}
+
+// Of the widest page, where a gutter takes the smallest part of it.
+double gutter_in_uv(const texture::CutMesh& cut) { return static_cast<double>(cut.gutter) / widest_page(cut); }
+
 std::string name_of_target(const Options& options, std::size_t i) {
   Options one;
   one.lods = {options.lods[i]};
@@ -95,11 +104,12 @@ std::string name_of_target(const Options& options, std::size_t i) {
 } // namespace
 
 std::vector<DetailLevel> make_levels(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut,
-                                     double gutter, Progress& progress, Report& report) {
+                                     Progress& progress, Report& report) {
   std::vector<DetailLevel> out;
   if (report.options.lods.empty()) return out;
   const lod::FullSurface full(surface.mesh, surface.primitive_of, cut);
-  std::vector<lod::Level> levels = lod::simplify(full, targets_of(report.options, surface), gutter, progress);
+  std::vector<lod::Level> levels =
+      lod::simplify(full, targets_of(report.options, surface), gutter_in_uv(cut), progress);
 
   mesh::ThreadPool threads(report.options.threads);
   const lod::Ruler ruler(full, threads);
@@ -112,7 +122,7 @@ std::vector<DetailLevel> make_levels(const asset::Asset& asset, const Surface& s
     facts.screen_coverage = coverage = std::min(coverage, coverage_of(facts.texture_deviation / 100));
     const lod::Concessions& c = levels[i].concessions;
     facts.turned_normals = c.turned_normals;
-    facts.outline_texels = c.outline * report.atlas.width;
+    facts.outline_texels = c.outline * widest_page(cut);
     facts.lost_components = c.lost_components;
     facts.reached = !c.is_short;
     note_concessions(c, "/levels/" + std::to_string(i), report);

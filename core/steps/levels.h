@@ -21,11 +21,10 @@ struct DetailLevel {
 };
 
 // The levels that options.lods asks for; none where it is empty. Ratios count the triangles of the surface before it
-// was cut for the atlas. gutter: of the atlas, in texture coordinates. Fills report.levels but for what is proved on
+// was cut for the atlas. Fills report.levels but for what is proved on
 // the file, and notes what a target cost. Reports Stage::levels.
 [[nodiscard]] std::vector<DetailLevel> make_levels(const asset::Asset& asset, const Surface& surface,
-                                                   const texture::CutMesh& cut, double gutter, Progress& progress,
-                                                   Report& report);
+                                                   const texture::CutMesh& cut, Progress& progress, Report& report);
 
 // As write_asset takes them.
 [[nodiscard]] std::vector<asset::NewLevel> in_asset(std::span<const DetailLevel> levels, const Report& report);

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "core/asset/image_codec.h"
-#include "core/steps/placement.h"
 #include "core/texture/bake.h"
 #include "core/texture/preview.h"
 
@@ -38,15 +37,15 @@ Image decode_file(const Request& request, std::string_view stem, const Limits& l
   return asset::decode_image(*bytes, limits.max_image_pixels, stem);
 }
 
-Image paint_cube_map(const Request& request, const Limits& limits, const texture::AtlasLayout& layout,
-                     Progress& progress) {
+// The six images, or the one, that texture=cubemap takes.
+std::vector<Image> uploaded_images(const Request& request, const Limits& limits) {
   std::vector<Image> images;
   if (find_file(request, equirectangular_name) != nullptr) {
     images.push_back(decode_file(request, equirectangular_name, limits));
   } else {
     for (const std::string_view name : cube_names) images.push_back(decode_file(request, name, limits));
   }
-  return texture::bake_cube_map(layout, images, progress);
+  return images;
 }
 
 // The base colour of every primitive, decoded.
@@ -104,9 +103,7 @@ std::vector<Vec2f> source_uv(const asset::Asset& asset, const OwnColors& own, co
   return uv;
 }
 
-Image paint_own_colors(const asset::Asset& asset, const OwnColors& own, const Surface& surface,
-                       const texture::CutMesh& cut, const Delivery& delivery, const texture::AtlasLayout& layout,
-                       Progress& progress) {
+std::vector<texture::BaseColorSource> sources_of(const asset::Asset& asset, const OwnColors& own) {
   std::vector<texture::BaseColorSource> sources(asset.primitives.size());
   for (std::size_t p = 0; p < sources.size(); ++p) {
     // Without an image: white, since the material keeps its base colour factor.
@@ -116,62 +113,36 @@ Image paint_own_colors(const asset::Asset& asset, const OwnColors& own, const Su
     sources[p].wrap_v = static_cast<texture::Wrap>(own.colors[p]->wrap_t);
     std::ranges::copy(own.colors[p]->transform, sources[p].transform.begin());
   }
-  return texture::bake_base_color(layout, cut, source_uv(asset, own, delivery), surface.primitive_of, sources,
-                                  progress);
+  return sources;
 }
 
-// Faces that hold a part of a component.
-std::uint64_t charts_in(const Surface& surface, const texture::CutMesh& cut) {
-  std::uint64_t charts = 0;
-  std::size_t t = 0;
-  for (const Component& c : surface.components) {
-    std::array<bool, texture::face_count> used{};
-    for (; t < cut.parent.size() && cut.parent[t] < c.end_triangle(); ++t) used[cut.face[t]] = true;
-    charts += static_cast<std::uint64_t>(std::ranges::count(used, true));
-  }
-  return charts;
-}
-
-// The same picture in each cell of the grid.
-Image tiled(const Image& tile, const texture::AtlasLayout& layout, std::size_t side) {
-  if (side == 1) return tile;
-  Image out{layout.width, layout.height, tile.channels, {}};
-  out.pixels.resize(std::size_t{out.width} * out.height * out.channels);
-  for (std::uint32_t y = 0; y < out.height; ++y) {
-    for (std::uint32_t x = 0; x < out.width; ++x) {
-      const auto u = static_cast<std::uint32_t>(std::uint64_t{x} * side % out.width * tile.width / out.width);
-      const auto v = static_cast<std::uint32_t>(std::uint64_t{y} * side % out.height * tile.height / out.height);
-      std::copy_n(tile.at(u, v), tile.channels, out.pixels.data() + (std::size_t{y} * out.width + x) * out.channels);
-    }
-  }
-  return out;
+// One image a page.
+template <class Bake> std::vector<Image> bake_pages(const texture::CutMesh& cut, Bake bake) {
+  std::vector<Image> pages;
+  for (std::uint32_t page = 0; page < cut.pages.size(); ++page) pages.push_back(bake(page));
+  return pages;
 }
 
 } // namespace
 
-Image paint(const Request& request, const Limits& limits, const asset::Asset& asset, const Surface& surface,
-            const texture::CutMesh& cut, const Delivery& delivery, const texture::AtlasLayout& layout,
-            Progress& progress, Report& report) {
-  report.atlas.width = layout.width;
-  report.atlas.height = layout.height;
-  report.atlas.gutter = layout.gutter;
-  report.atlas.utilisation = layout.utilisation();
-  report.atlas.charts = charts_in(surface, cut);
-  report.atlas.cut_triangles = cut.cut_triangles;
-  report.atlas.added_vertices = cut.points - surface.mesh.positions.size();
-
-  const std::size_t side = cells_for(surface.components.size()).side;
-  const texture::AtlasLayout cell = texture::layout_for(std::max(64U, layout.width / static_cast<std::uint32_t>(side)));
+std::vector<Image> paint(const Request& request, const Limits& limits, const asset::Asset& asset,
+                         const Surface& surface, const texture::CutMesh& cut, const Delivery& delivery,
+                         Progress& progress, Report& report) {
   const TextureSource wanted = request.options.texture;
   if (wanted == TextureSource::cubemap) {
     report.atlas.source = "cubemap";
-    return tiled(paint_cube_map(request, limits, cell, progress), layout, side);
+    const std::vector<Image> images = uploaded_images(request, limits);
+    return bake_pages(cut, [&](std::uint32_t page) { return texture::bake_cube_map(cut, page, images, progress); });
   }
   if (wanted != TextureSource::pattern) {
     const OwnColors own = own_colors(asset, limits, wanted == TextureSource::base_color, report);
     if (has_any(own)) {
       report.atlas.source = "base_color";
-      return paint_own_colors(asset, own, surface, cut, delivery, layout, progress);
+      const std::vector<Vec2f> uv = source_uv(asset, own, delivery);
+      const std::vector<texture::BaseColorSource> sources = sources_of(asset, own);
+      return bake_pages(cut, [&](std::uint32_t page) {
+        return texture::bake_base_color(cut, page, uv, surface.primitive_of, sources, progress);
+      });
     }
     if (wanted == TextureSource::base_color) {
       throw Error(ErrorCode::invalid_option,
@@ -181,16 +152,24 @@ Image paint(const Request& request, const Limits& limits, const asset::Asset& as
     }
   }
   report.atlas.source = "pattern";
-  return tiled(texture::bake_pattern(cell, progress), layout, side);
+  return bake_pages(cut, [&](std::uint32_t page) { return texture::bake_pattern(cut, page, progress); });
 }
 
-asset::NewImage encode_atlas(const Image& atlas, const std::vector<std::byte>& png, const Options& options) {
-  if (options.texture_format == TextureFormat::png) return {png, "image/png"};
-  return {asset::encode_jpeg(atlas, static_cast<int>(options.jpeg_quality)), "image/jpeg"};
+std::vector<asset::NewImage> encode_atlas(std::span<const Image> pages, const std::vector<std::byte>& first_png,
+                                          const Options& options) {
+  std::vector<asset::NewImage> out;
+  for (const Image& page : pages) {
+    if (options.texture_format == TextureFormat::jpeg) {
+      out.push_back({asset::encode_jpeg(page, static_cast<int>(options.jpeg_quality)), "image/jpeg"});
+    } else {
+      out.push_back({out.empty() ? first_png : asset::encode_png(page), "image/png"});
+    }
+  }
+  return out;
 }
 
-std::vector<std::byte> preview(const Surface& surface, const texture::CutMesh& cut, const Image& atlas) {
-  return asset::encode_png(texture::draw_side_by_side(surface.mesh, cut, atlas, preview_width, preview_height));
+std::vector<std::byte> preview(const Surface& surface, const texture::CutMesh& cut, std::span<const Image> pages) {
+  return asset::encode_png(texture::draw_side_by_side(surface.mesh, cut, pages, preview_width, preview_height));
 }
 
 } // namespace orbis

@@ -13,20 +13,20 @@
 
 namespace orbis {
 
-// Bakes what options.texture asks for; fills report.atlas. texture=auto takes the model's own base colour where any of
-// its materials has a base colour texture that came with the request, else the test pattern. Throws Error:
-// invalid_option where texture=base_color or cubemap is asked for and there is no such image, or not the right ones;
-// malformed, unsupported_format or too_large for an image that cannot be read.
-[[nodiscard]] texture::Image paint(const Request& request, const Limits& limits, const asset::Asset& asset,
-                                   const Surface& surface, const texture::CutMesh& cut, const Delivery& delivery,
-                                   const texture::AtlasLayout& layout, Progress& progress, Report& report);
+// Bakes what options.texture asks for, one image for each page; fills report.atlas.source. texture=auto takes the
+// model's own base colour where any of its materials has a base colour texture that came with the request, else the
+// test pattern. Throws Error: invalid_option where texture=base_color or cubemap is asked for and there is no such
+// image, or not the right ones; malformed, unsupported_format or too_large for an image that cannot be read.
+[[nodiscard]] std::vector<texture::Image> paint(const Request& request, const Limits& limits, const asset::Asset& asset,
+                                                const Surface& surface, const texture::CutMesh& cut,
+                                                const Delivery& delivery, Progress& progress, Report& report);
 
-// The atlas as options.texture_format asks for. png: the atlas as PNG, which is made in any case.
-[[nodiscard]] asset::NewImage encode_atlas(const texture::Image& atlas, const std::vector<std::byte>& png,
-                                           const Options& options);
+// The pages as options.texture_format asks for. first_png: the first page as PNG, which is made in any case.
+[[nodiscard]] std::vector<asset::NewImage>
+encode_atlas(std::span<const texture::Image> pages, const std::vector<std::byte>& first_png, const Options& options);
 
 // The sphere and the model side by side, with the atlas on both, as PNG.
 [[nodiscard]] std::vector<std::byte> preview(const Surface& surface, const texture::CutMesh& cut,
-                                             const texture::Image& atlas);
+                                             std::span<const texture::Image> pages);
 
 } // namespace orbis

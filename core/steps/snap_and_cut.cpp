@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <string>
 
+#include "core/mesh/disjoint_sets.h"
 #include "core/sphere/snap.h"
-#include "core/steps/placement.h"
+#include "core/texture/flat_charts.h"
+#include "core/texture/place.h"
 
 namespace orbis {
 namespace {
@@ -21,78 +24,143 @@ Vec3d turned(const Vec3d& p, double angle) {
   return c * p + s * cross(axis, p) + (1 - c) * dot(axis, p) * axis;
 }
 
-// One component, with numbers of its own.
-struct CutComponent {
-  std::vector<sphere::GridPoint> points;
-  texture::CutMesh cut;
-  int turns = 0;
-};
-
-CutComponent snap_and_cut_one(const Surface& surface, const Component& c, std::span<const Vec3d> points,
-                              const texture::AtlasLayout& layout, Progress& progress) {
-  const mesh::TriangleMesh mesh = mesh_of(surface, c);
-  const auto delivered = std::span(mesh.triangles).first(c.input_triangles);
-  const auto corners = std::span(surface.corners).subspan(c.first_triangle, c.input_triangles);
-  std::string failure;
-  std::vector<Vec3d> rotated(points.begin(), points.end());
-  for (int turn = 0; turn < most_turns; ++turn) {
-    for (std::size_t v = 0; turn > 0 && v < points.size(); ++v) rotated[v] = turned(points[v], turn * turn_angle);
-    sphere::Snapped snapped = sphere::snap(rotated, mesh.triangles);
-    if (snapped.folded > 0) {
-      failure = std::to_string(snapped.folded) + " triangles are too small for the numbers of the result";
-      continue;
-    }
-    try {
-      texture::CutMesh cut = texture::cut(delivered, corners, snapped.points, layout, progress);
-      return {std::move(snapped.points), std::move(cut), turn};
-    } catch (const Error& e) {
-      if (e.code() != ErrorCode::not_certified) throw;
-      failure = e.message();
+// Which page each component's charts go to. Per material: components that share one, directly or through others, share
+// a page, since a component's charts do and a material has one image.
+std::vector<std::uint32_t> pages_of(const asset::Asset& asset, const Surface& surface, AtlasPages wanted) {
+  std::vector<std::uint32_t> page(surface.components.size(), 0);
+  if (wanted == AtlasPages::single) return page;
+  const auto components = static_cast<std::uint32_t>(page.size());
+  std::uint32_t materials = 1; // the first stands for "none"
+  for (const asset::Primitive& p : asset.primitives) materials = std::max(materials, p.material.value_or(0) + 2);
+  mesh::DisjointSets sets(std::size_t{components} + materials);
+  for (std::uint32_t i = 0; i < components; ++i) {
+    const Component& c = surface.components[i];
+    for (std::uint32_t t = c.first_triangle; t < c.first_triangle + c.input_triangles; ++t) {
+      const auto material = asset.primitives[surface.primitive_of[t]].material;
+      sets.unite(i, components + (material ? *material + 1 : 0));
     }
   }
-  throw Error(ErrorCode::not_certified, "the map could not be delivered without a fold: " + failure);
+  std::vector<std::uint32_t> number(components + materials, no_primitive);
+  std::uint32_t pages = 0;
+  for (std::uint32_t i = 0; i < components; ++i) {
+    std::uint32_t& known = number[sets.find(i)];
+    if (known == no_primitive) known = pages++;
+    page[i] = known;
+  }
+  return page;
 }
 
-// Appends a component's cut mesh, with the surface's numbers for its own. Added points are numbered behind all vertices
-// of the surface.
-void append(const Surface& surface, const Component& c, const texture::CutMesh& part, texture::CutMesh& out) {
-  const auto first = static_cast<mesh::Index>(out.vertices.size());
-  const auto added = static_cast<std::uint32_t>(std::max<std::uint64_t>(out.points, surface.mesh.positions.size()));
-  for (texture::CutVertex v : part.vertices) {
-    v.triangle += c.first_triangle;
-    v.point = v.point < c.vertices ? v.point + c.first_vertex : v.point - c.vertices + added;
-    out.vertices.push_back(v);
+// One component on its way to the atlas.
+class ComponentCharts {
+public:
+  ComponentCharts(const Surface& surface, const Component& c, std::span<const Vec3d> points, std::uint32_t page)
+      : component_(c), mesh_(mesh_of(surface, c)), points_(points),
+        corners_(std::span(surface.corners).subspan(c.first_triangle, c.input_triangles)), page_(page) {}
+
+  // Snaps the sphere to the grid and lays the charts flat; again, with the sphere turned a little further, each time it
+  // is called. Throws Error{not_certified} if no turn helps.
+  void next(Progress& progress) {
+    for (;;) {
+      if (++turns_ >= most_turns)
+        throw Error(ErrorCode::not_certified, "the map could not be delivered without a fold: " + failure_);
+      try {
+        attempt(progress);
+        // What may still go wrong with it.
+        failure_ = "a triangle is too small for the numbers of the atlas";
+        return;
+      } catch (const Error& e) {
+        if (e.code() != ErrorCode::not_certified) throw;
+        failure_ = e.message();
+      }
+    }
   }
-  for (const auto& [i, j, k] : part.triangles) out.triangles.push_back({first + i, first + j, first + k});
-  for (const std::uint32_t t : part.parent) out.parent.push_back(c.first_triangle + t);
-  out.face.insert(out.face.end(), part.face.begin(), part.face.end());
-  out.cut_triangles += part.cut_triangles;
-  out.points = added + part.points - c.vertices;
+
+  [[nodiscard]] texture::AtlasComponent atlas_component() const {
+    return {mesh_.triangles,
+            corners_,
+            sphere_,
+            mesh_.positions,
+            component_.input_triangles,
+            component_.first_vertex,
+            component_.first_triangle,
+            page_};
+  }
+  [[nodiscard]] const texture::FlatCharts& charts() const { return charts_; }
+  [[nodiscard]] const std::vector<sphere::GridPoint>& sphere() const { return sphere_; }
+  [[nodiscard]] int turns() const { return turns_; }
+  [[nodiscard]] const Component& component() const { return component_; }
+
+private:
+  const Component& component_;
+  mesh::TriangleMesh mesh_;
+  std::span<const Vec3d> points_;
+  std::span<const mesh::Triangle> corners_;
+  std::uint32_t page_;
+  int turns_ = -1;
+  std::string failure_;
+  std::vector<sphere::GridPoint> sphere_;
+  texture::FlatCharts charts_;
+
+  void attempt(Progress& progress) {
+    std::vector<Vec3d> rotated(points_.begin(), points_.end());
+    for (std::size_t v = 0; turns_ > 0 && v < rotated.size(); ++v) rotated[v] = turned(points_[v], turns_ * turn_angle);
+    sphere::Snapped snapped = sphere::snap(rotated, mesh_.triangles);
+    if (snapped.folded > 0)
+      throw Error(ErrorCode::not_certified,
+                  std::to_string(snapped.folded) + " triangles are too small for the numbers of the result");
+    sphere_ = std::move(snapped.points);
+    charts_ = texture::lay_flat(atlas_component(), progress);
+  }
+};
+
+void describe(const Surface& surface, const texture::CutMesh& cut, Report& report) {
+  for (const texture::Page& page : cut.pages) report.atlas.pages.push_back({page.width, page.height});
+  report.atlas.gutter = cut.gutter;
+  report.atlas.utilisation = texture::utilisation(cut);
+  report.atlas.charts = cut.charts.size();
+  report.atlas.cut_triangles = cut.cut_triangles;
+  report.atlas.added_vertices = cut.points - surface.mesh.positions.size();
 }
 
 } // namespace
 
-CutSphere snap_and_cut(const Surface& surface, std::span<const Vec3d> points, const texture::AtlasLayout& layout,
-                       Progress& progress, Report& report) {
-  CutSphere out;
-  const CellGrid grid = cells_for(surface.components.size());
+CutSphere snap_and_cut(const asset::Asset& asset, const Surface& surface, std::span<const Vec3d> points,
+                       const Options& options, Progress& progress, Report& report) {
+  const std::vector<std::uint32_t> pages = pages_of(asset, surface, options.atlas);
+  std::vector<ComponentCharts> components;
+  components.reserve(surface.components.size());
+  NoProgress quiet;
   for (std::size_t i = 0; i < surface.components.size(); ++i) {
     const Component& c = surface.components[i];
     progress.check();
-    NoProgress quiet;
-    CutComponent one = snap_and_cut_one(surface, c, points.subspan(c.first_vertex, c.vertices), layout,
-                                        surface.components.size() == 1 ? progress : quiet);
-    for (texture::CutVertex& v : one.cut.vertices) v.uv = grid.place(i, v.uv);
-    append(surface, c, one.cut, out.cut);
-    out.points.insert(out.points.end(), one.points.begin(), one.points.end());
-    if (one.turns > 0) {
-      report.notes.push_back({"turned-sphere",
-                              "the sphere was turned by " + std::to_string(one.turns * turn_angle) +
-                                  " radians to keep every triangle resolvable",
-                              "/meshes/" + std::to_string(c.mesh)});
-    }
+    progress.report(Stage::atlas, i, surface.components.size());
+    components.emplace_back(surface, c, points.subspan(c.first_vertex, c.vertices), pages[i]).next(quiet);
   }
-  progress.report(Stage::atlas, 1, 1);
+
+  texture::Placed placed;
+  for (;;) {
+    std::vector<texture::AtlasComponent> inputs;
+    std::vector<texture::FlatCharts> charts;
+    for (const ComponentCharts& c : components) {
+      inputs.push_back(c.atlas_component());
+      charts.push_back(c.charts());
+    }
+    placed = texture::place(inputs, charts, options.texture_size);
+    if (placed.folded.empty()) break;
+    for (const std::uint32_t i : placed.folded) components[i].next(quiet);
+  }
+
+  CutSphere out{{}, std::move(placed.mesh)};
+  for (const ComponentCharts& c : components) {
+    out.points.insert(out.points.end(), c.sphere().begin(), c.sphere().end());
+    if (c.turns() == 0) continue;
+    report.notes.push_back({"turned-sphere",
+                            "the sphere was turned by " + std::to_string(c.turns() * turn_angle) +
+                                " radians to keep every triangle resolvable",
+                            "/meshes/" + std::to_string(c.component().mesh)});
+  }
+  describe(surface, out.cut, report);
+  progress.report(Stage::atlas, surface.components.size(), surface.components.size());
   return out;
 }
 

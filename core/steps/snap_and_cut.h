@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/asset/asset.h"
 #include "core/report.h"
 #include "core/sphere/orientation.h"
 #include "core/steps/surface.h"
@@ -15,10 +16,11 @@ struct CutSphere {
   texture::CutMesh cut;                  // of all components; without the caps
 };
 
-// Snaps each component's points to the grid and cuts its triangles at the atlas' borders. Where rounding folds a
-// triangle or a piece beyond repair, the sphere is turned a little against grid and cube and both are tried again, a
-// few times, always in the same way. Throws Error{not_certified} if no turn helps.
-[[nodiscard]] CutSphere snap_and_cut(const Surface& surface, std::span<const Vec3d> points,
-                                     const texture::AtlasLayout& layout, Progress& progress, Report& report);
+// Snaps each component's points to the grid, cuts it into charts and packs them all into pages, by options.atlas and
+// options.texture_size. Where rounding folds a triangle or a piece beyond repair, that component's sphere is turned a
+// little against grid and cube and tried again, a few times, always in the same way. Fills report.atlas but for its
+// source. Throws Error{not_certified} if no turn helps.
+[[nodiscard]] CutSphere snap_and_cut(const asset::Asset& asset, const Surface& surface, std::span<const Vec3d> points,
+                                     const Options& options, Progress& progress, Report& report);
 
 } // namespace orbis

@@ -1,46 +1,54 @@
 #include "core/texture/atlas.h"
 
-#include <algorithm>
-#include <bit>
-
 #include "core/error.h"
+#include "core/texture/cut.h"
+#include "core/texture/flat_charts.h"
+#include "core/texture/flatten.h"
+#include "core/texture/place.h"
 
 namespace orbis::texture {
+namespace {
 
-AtlasLayout layout_for(std::uint32_t texture_size) {
-  if (texture_size < 64 || texture_size > 8192)
-    throw Error(ErrorCode::invalid_option, "the atlas must be 64 to 8192 texels wide", "texture_size");
-  AtlasLayout layout;
-  layout.width = texture_size;
-  layout.cell = texture_size / 3;
-  layout.height = (2 * layout.cell + 3) / 4 * 4;
-  layout.gutter = std::bit_floor(std::max(layout.cell / 40, 2U));
-  return layout;
+Vec3d position(const AtlasComponent& component, const CutVertex& vertex) {
+  Vec3d sum;
+  for (std::size_t k = 0; k < 3; ++k)
+    sum += Vec3d(component.positions[component.triangles[vertex.triangle][k]]) * vertex.barycentric[k];
+  return sum;
 }
 
-Face AtlasLayout::face_at(std::uint32_t x, std::uint32_t y) const {
-  return static_cast<Face>(3 * std::min(y / cell, 1U) + std::min(x / cell, 2U));
+std::vector<bool> shown_charts(const FlatCharts& charts, std::size_t delivered) {
+  std::vector<bool> out(charts.mesh.charts.size(), false);
+  for (std::size_t t = 0; t < charts.mesh.triangles.size(); ++t)
+    if (charts.mesh.parent[t] < delivered) out[charts.mesh.chart[t]] = true;
+  return out;
 }
 
-bool AtlasLayout::in_chart(std::uint32_t x, std::uint32_t y) const {
-  const Face f = face_at(x, y);
-  // Left of the chart the unsigned difference wraps around to a large number.
-  return x - chart_x(f) < chart() && y - chart_y(f) < chart();
+} // namespace
+
+double utilisation(const CutMesh& mesh) {
+  double used = 0, all = 0;
+  for (const Chart& c : mesh.charts) used += static_cast<double>(c.width) * c.height;
+  for (const Page& p : mesh.pages) all += static_cast<double>(p.width) * p.height;
+  return all > 0 ? used / all : 0;
 }
 
-double AtlasLayout::utilisation() const {
-  const double side = chart();
-  return static_cast<double>(face_count) * side * side / (static_cast<double>(width) * height);
+FlatCharts lay_flat(const AtlasComponent& component, Progress& progress) {
+  FlatCharts charts = cut(component, progress);
+  charts.is_shown = shown_charts(charts, component.delivered);
+  std::vector<Vec3d> positions(charts.places.size());
+  for (std::size_t v = 0; v < charts.mesh.vertices.size(); ++v)
+    positions[charts.place_of[v]] = position(component, charts.mesh.vertices[v]);
+  flatten(charts, positions, component.delivered);
+  return charts;
 }
 
-std::array<double, 2> AtlasLayout::texel_of(Face f, const FacePoint& p) const {
-  const double half = 0.5 * chart();
-  return {chart_x(f) + half * (p.u + 1), chart_y(f) + half * (p.v + 1)};
-}
-
-FacePoint AtlasLayout::face_point(Face f, double texel_x, double texel_y) const {
-  const double scale = 2.0 / chart();
-  return {scale * (texel_x - chart_x(f)) - 1, scale * (texel_y - chart_y(f)) - 1};
+CutMesh make_atlas(const AtlasComponent& component, std::uint32_t texture_size, Progress& progress) {
+  const FlatCharts charts = lay_flat(component, progress);
+  Placed placed = place(std::span(&component, 1), std::span(&charts, 1), texture_size);
+  if (!placed.folded.empty())
+    throw Error(ErrorCode::not_certified, "a triangle is too small for the numbers of the atlas");
+  progress.report(Stage::atlas, 1, 1);
+  return std::move(placed.mesh);
 }
 
 } // namespace orbis::texture

@@ -1,7 +1,7 @@
-// What the atlas shows: a test pattern, a cube map or equirectangular image, or the model's own base colour.
+// What a page of the atlas shows: a test pattern, a cube map or equirectangular image, or the model's own base colour.
 //
-// Every texel of a chart belongs to exactly one point of the surface. The gutters show the surface beyond the border,
-// as it lies on the neighbouring face, so bilinear and mip-mapped reads cross a seam without a jump.
+// Every texel of a chart belongs to exactly one point of the surface: the delivered triangle that its centre lies in,
+// and the weights there. The gutters repeat the nearest such texel.
 #pragma once
 
 #include <array>
@@ -15,8 +15,9 @@
 
 namespace orbis::texture {
 
-// A numbered checker: each face has its own colour and name, each field its column letter and row number. RGB.
-[[nodiscard]] Image bake_pattern(const AtlasLayout& layout, Progress& progress);
+// A numbered checker on the sphere: each face of the cube around it has its own colour and name, each field its column
+// letter and row number. RGB.
+[[nodiscard]] Image bake_pattern(const CutMesh& mesh, std::uint32_t page, Progress& progress);
 
 // Uploaded images, looked up by direction on the sphere.
 //   images  six (+X -X +Y -Y +Z -Z, as OpenGL and glTF viewers name px, nx, py, ny, pz, nz; see cube_map.h), of any
@@ -24,7 +25,8 @@ namespace orbis::texture {
 //           it, +Y at the top, as a globe is printed.
 // Filtered in linear light. RGBA if any of them is, else RGB. Throws Error{invalid_option} for another number of images
 // and for an image without pixels.
-[[nodiscard]] Image bake_cube_map(const AtlasLayout& layout, std::span<const Image> images, Progress& progress);
+[[nodiscard]] Image bake_cube_map(const CutMesh& mesh, std::uint32_t page, std::span<const Image> images,
+                                  Progress& progress);
 
 // What a texture does outside [0, 1]; glTF's codes.
 enum class Wrap : std::uint16_t { repeat = 10497, clamp = 33071, mirror = 33648 };
@@ -44,11 +46,8 @@ struct BaseColorSource {
 // Linear in each delivered triangle, as a renderer interpolates, so what is shown is what the input showed. Bilinear in
 // linear light; where the image is finer than the atlas, averaged over the texel. Alpha stays straight. RGBA if any
 // source has alpha, else RGB.
-[[nodiscard]] Image bake_base_color(const AtlasLayout& layout, const CutMesh& mesh, std::span<const Vec2f> uv,
+[[nodiscard]] Image bake_base_color(const CutMesh& mesh, std::uint32_t page, std::span<const Vec2f> uv,
                                     std::span<const std::uint32_t> source_of, std::span<const BaseColorSource> sources,
                                     Progress& progress);
-
-// Fills all texels outside the charts with what lies beyond the border. image: of the layout's size.
-void fill_gutters(const AtlasLayout& layout, Image& image);
 
 } // namespace orbis::texture

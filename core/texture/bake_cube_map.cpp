@@ -1,16 +1,29 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <memory>
 #include <numbers>
 
 #include "core/error.h"
 #include "core/texture/bake.h"
+#include "core/texture/cube_map.h"
+#include "core/texture/gutter.h"
+#include "core/texture/page_raster.h"
 #include "core/texture/sampler.h"
 
 namespace orbis::texture {
 namespace {
 
-constexpr std::uint32_t report_interval = 32; // rows
+constexpr std::uint32_t report_interval = 1U << 12U; // triangles
+
+// Colours by direction on the sphere.
+class Surroundings {
+public:
+  virtual ~Surroundings() = default;
+  // Source texels across `angle` radians at d, in the direction in which there are most.
+  [[nodiscard]] virtual double texels_across(const Vec3d& d, double angle) const = 0;
+  // d: not zero, need not be normalized.
+  [[nodiscard]] virtual Light look(const Vec3d& d, std::uint32_t level) const = 0;
+};
 
 // Face coordinates to texels of a face's image.
 std::array<double, 2> texel_of(const Image& image, const FacePoint& p) {
@@ -40,93 +53,140 @@ Image framed(std::span<const Image> images, Face f, std::uint32_t frame) {
   return outer;
 }
 
-// Reads a colour for face coordinates.
-using Lookup = std::function<Light(const FacePoint&)>;
-
-class Painter {
+class CubeFaces final : public Surroundings {
 public:
-  Painter(const AtlasLayout& layout, std::uint32_t channels, Progress& progress)
-      : layout_(layout), progress_(progress), image_{layout.width, layout.height, channels, {}} {
-    image_.pixels.resize(std::size_t{image_.width} * image_.height * image_.channels);
-  }
-
-  // Each texel is the mean of taps x taps reads.
-  void paint(Face f, std::uint32_t taps, const Lookup& lookup) {
-    const std::uint32_t left = layout_.chart_x(f), top = layout_.chart_y(f), side = layout_.chart();
-    for (std::uint32_t y = 0; y < side; ++y) {
-      if (y % report_interval == 0) {
-        progress_.check();
-        progress_.report(Stage::bake, std::uint64_t{f} * side + y, face_count * side);
-      }
-      for (std::uint32_t x = 0; x < side; ++x) {
-        Light sum{};
-        for (std::uint32_t j = 0; j < taps; ++j)
-          for (std::uint32_t i = 0; i < taps; ++i) {
-            const Light light = lookup(layout_.face_point(f, left + x + (i + 0.5) / taps, top + y + (j + 0.5) / taps));
-            for (std::size_t c = 0; c < 4; ++c) sum[c] += light[c];
-          }
-        for (float& c : sum) c /= static_cast<float>(taps * taps);
-        store(sum, image_, left + x, top + y);
-      }
+  CubeFaces(std::span<const Image> images, std::uint32_t levels) : images_(images), frame_(1U << levels) {
+    framed_.reserve(face_count);
+    samplers_.reserve(face_count);
+    for (Face f = 0; f < face_count; ++f) {
+      framed_.push_back(framed(images, f, frame_));
+      samplers_.emplace_back(framed_.back(), Wrap::clamp, Wrap::clamp, levels);
     }
   }
 
-  Image finish() {
-    fill_gutters(layout_, image_);
-    progress_.report(Stage::bake, face_count * layout_.chart(), face_count * layout_.chart());
-    return std::move(image_);
+  // The central projection stretches by 1 + u^2 + v^2 at most.
+  [[nodiscard]] double texels_across(const Vec3d& d, double angle) const override {
+    const Face f = face_of(d);
+    const auto [u, v] = project(d, f);
+    return 0.5 * std::max(images_[f].width, images_[f].height) * (1 + u * u + v * v) * angle;
+  }
+
+  [[nodiscard]] Light look(const Vec3d& d, std::uint32_t level) const override {
+    const Face f = face_of(d);
+    const auto [x, y] = texel_of(images_[f], project(d, f));
+    return samplers_[f].sample(x + frame_, y + frame_, level);
   }
 
 private:
-  const AtlasLayout& layout_;
-  Progress& progress_;
-  Image image_;
+  std::span<const Image> images_;
+  std::uint32_t frame_; // texels: two of the coarsest level that is read
+  std::vector<Image> framed_;
+  std::vector<Sampler> samplers_;
 };
 
-void paint_faces(const AtlasLayout& layout, std::span<const Image> images, Painter& painter) {
-  for (Face f = 0; f < face_count; ++f) {
-    const double finest = std::max(images[f].width, images[f].height);
-    const Footprint footprint = footprint_of(finest / layout.chart());
-    const std::uint32_t frame = 2U << footprint.level; // two texels of the level that is read
-    const Image source = framed(images, f, frame);
-    const Sampler sampler(source, Wrap::clamp, Wrap::clamp, footprint.level + 1);
-    painter.paint(f, footprint.taps, [&](const FacePoint& p) {
-      const auto [x, y] = texel_of(images[f], p);
-      return sampler.sample(x + frame, y + frame, footprint.level);
-    });
+class Globe final : public Surroundings {
+public:
+  Globe(const Image& image, std::uint32_t levels) : image_(image), sampler_(image, Wrap::repeat, Wrap::clamp, levels) {}
+
+  // Away from the poles, where a texel of the globe is a needle that no mip level fits.
+  [[nodiscard]] double texels_across(const Vec3d&, double angle) const override {
+    return std::max(image_.width / (2 * std::numbers::pi), image_.height / std::numbers::pi) * angle;
   }
+
+  [[nodiscard]] Light look(const Vec3d& d, std::uint32_t level) const override {
+    const double longitude = std::atan2(d.x, d.z), latitude = std::atan2(d.y, std::hypot(d.x, d.z));
+    return sampler_.sample((0.5 + longitude / (2 * std::numbers::pi)) * image_.width,
+                           (0.5 - latitude / std::numbers::pi) * image_.height, level);
+  }
+
+private:
+  const Image& image_;
+  Sampler sampler_;
+};
+
+// Mip levels down to images of some sixteen texels.
+std::uint32_t level_count(std::span<const Image> images) {
+  std::uint32_t smallest = 1U << 16U;
+  for (const Image& image : images) smallest = std::min({smallest, image.width, image.height});
+  std::uint32_t levels = 1;
+  for (; smallest > 16; smallest /= 2) ++levels;
+  return levels;
 }
 
-void paint_globe(const AtlasLayout& layout, const Image& image, Painter& painter) {
-  // Four charts go around the equator, two from pole to pole. A chart's texel is largest on the sphere in the middle of
-  // the chart: 4 / pi times the mean.
-  const double quarter = std::max(image.width / 4.0, image.height / 2.0);
-  const Footprint footprint = footprint_of(4 / std::numbers::pi * quarter / layout.chart());
-  const Sampler sampler(image, Wrap::repeat, Wrap::clamp, footprint.level + 1);
-  for (Face f = 0; f < face_count; ++f)
-    painter.paint(f, footprint.taps, [&](const FacePoint& p) {
-      const Vec3d d = direction(f, p);
-      const double longitude = std::atan2(d.x, d.z), latitude = std::atan2(d.y, std::hypot(d.x, d.z));
-      return sampler.sample((0.5 + longitude / (2 * std::numbers::pi)) * image.width,
-                            (0.5 - latitude / std::numbers::pi) * image.height, footprint.level);
-    });
+// A delivered triangle in the page and on the sphere; both are linear in the barycentric weights.
+struct SphereTriangle {
+  std::array<RasterPoint, 3> corners;
+  std::array<Vec3d, 3> sphere;
+  Vec3d along_x, along_y; // how the direction changes from texel to texel
+
+  SphereTriangle(const CutMesh& mesh, std::uint32_t t) : corners(in_page(mesh, t)) {
+    const std::array<double, 3> dx = weight_step(corners, 1, 0), dy = weight_step(corners, 0, 1);
+    for (std::size_t k = 0; k < 3; ++k) {
+      sphere[k] = Vec3d(sphere::from_grid(mesh.vertices[mesh.triangles[t][k]].sphere));
+      along_x += sphere[k] * dx[k];
+      along_y += sphere[k] * dy[k];
+    }
+  }
+
+  [[nodiscard]] Vec3d at(const std::array<double, 3>& w) const {
+    return sphere[0] * w[0] + sphere[1] * w[1] + sphere[2] * w[2];
+  }
+
+  // Radians across a texel around d, in the direction in which there are most.
+  [[nodiscard]] double angle(const Vec3d& d) const {
+    return std::sqrt(std::max(squared_norm(cross(d, along_x)), squared_norm(cross(d, along_y)))) / squared_norm(d);
+  }
+};
+
+// The mean over the texel around d.
+Light mean(const SphereTriangle& triangle, const Vec3d& d, const Surroundings& surroundings) {
+  const Footprint footprint = footprint_of(surroundings.texels_across(d, triangle.angle(d)));
+  if (footprint.taps == 1) return surroundings.look(d, footprint.level);
+  const double n = footprint.taps;
+  Light sum{};
+  for (std::uint32_t j = 0; j < footprint.taps; ++j)
+    for (std::uint32_t i = 0; i < footprint.taps; ++i) {
+      const Light light = surroundings.look(
+          d + triangle.along_x * ((i + 0.5) / n - 0.5) + triangle.along_y * ((j + 0.5) / n - 0.5), footprint.level);
+      for (std::size_t c = 0; c < 4; ++c) sum[c] += light[c];
+    }
+  for (float& c : sum) c /= static_cast<float>(n * n);
+  return sum;
 }
 
 } // namespace
 
-Image bake_cube_map(const AtlasLayout& layout, std::span<const Image> images, Progress& progress) {
+Image bake_cube_map(const CutMesh& mesh, std::uint32_t page, std::span<const Image> images, Progress& progress) {
   if (images.size() != 1 && images.size() != face_count)
     throw Error(ErrorCode::invalid_option,
                 "a cube map is six images (px, nx, py, ny, pz, nz) or one equirectangular image", "texture");
   if (std::any_of(images.begin(), images.end(), [](const Image& i) { return i.width == 0 || i.height == 0; }))
     throw Error(ErrorCode::invalid_option, "an image of the cube map has no pixels", "texture");
   const bool alpha = std::any_of(images.begin(), images.end(), [](const Image& i) { return i.channels == 4; });
-  Painter painter(layout, alpha ? 4 : 3, progress);
+  std::unique_ptr<Surroundings> surroundings;
   if (images.size() == 1)
-    paint_globe(layout, images[0], painter);
+    surroundings = std::make_unique<Globe>(images[0], level_count(images));
   else
-    paint_faces(layout, images, painter);
-  return painter.finish();
+    surroundings = std::make_unique<CubeFaces>(images, level_count(images));
+
+  Image image{mesh.pages[page].width, mesh.pages[page].height, alpha ? 4U : 3U, {}};
+  image.pixels.resize(std::size_t{image.width} * image.height * image.channels);
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  for (std::uint32_t t = 0; t < count; ++t) {
+    if (t % report_interval == 0) {
+      progress.check();
+      progress.report(Stage::bake, t, count);
+    }
+    if (mesh.page_of(t) != page) continue;
+    const SphereTriangle triangle(mesh, t);
+    rasterize(triangle.corners, image.width, image.height,
+              [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>& weights) {
+                store(mean(triangle, triangle.at(weights), *surroundings), image, x, y);
+              });
+  }
+  Gutters(mesh, page).fill(image);
+  progress.report(Stage::bake, count, count);
+  return image;
 }
 
 } // namespace orbis::texture

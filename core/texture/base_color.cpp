@@ -2,7 +2,8 @@
 #include <cmath>
 
 #include "core/texture/bake.h"
-#include "core/texture/raster.h"
+#include "core/texture/gutter.h"
+#include "core/texture/page_raster.h"
 #include "core/texture/sampler.h"
 
 namespace orbis::texture {
@@ -30,13 +31,13 @@ double source_texels_per_texel(const TexturedTriangle& t) {
 
 class Baker {
 public:
-  Baker(const AtlasLayout& layout, const CutMesh& mesh, std::span<const Vec2f> uv,
-        std::span<const std::uint32_t> source_of, std::span<const BaseColorSource> sources)
-      : layout_(layout), mesh_(mesh), uv_(uv), source_of_(source_of), sources_(sources) {
+  Baker(const CutMesh& mesh, std::uint32_t page, std::span<const Vec2f> uv, std::span<const std::uint32_t> source_of,
+        std::span<const BaseColorSource> sources)
+      : mesh_(mesh), page_(page), uv_(uv), source_of_(source_of), sources_(sources) {
     const bool alpha = std::any_of(sources.begin(), sources.end(), [](const BaseColorSource& s) {
       return s.image != nullptr ? s.image->channels == 4 : s.color[3] < 1;
     });
-    image_ = {layout.width, layout.height, alpha ? 4U : 3U, {}};
+    image_ = {mesh.pages[page].width, mesh.pages[page].height, alpha ? 4U : 3U, {}};
     image_.pixels.resize(std::size_t{image_.width} * image_.height * image_.channels);
     make_samplers();
   }
@@ -48,20 +49,21 @@ public:
         progress.check();
         progress.report(Stage::bake, t, count);
       }
+      if (mesh_.page_of(t) != page_) continue;
       const std::uint32_t source = source_of_[mesh_.parent[t]];
       if (sources_[source].image == nullptr)
         fill(t, sources_[source].color);
       else
         resample(t, source);
     }
-    fill_gutters(layout_, image_);
+    Gutters(mesh_, page_).fill(image_);
     progress.report(Stage::bake, count, count);
     return std::move(image_);
   }
 
 private:
-  const AtlasLayout& layout_;
   const CutMesh& mesh_;
+  std::uint32_t page_;
   std::span<const Vec2f> uv_;
   std::span<const std::uint32_t> source_of_;
   std::span<const BaseColorSource> sources_;
@@ -73,7 +75,7 @@ private:
     std::vector<std::uint32_t> levels(sources_.size(), 1);
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
       const std::uint32_t source = source_of_[mesh_.parent[t]];
-      if (sources_[source].image == nullptr) continue;
+      if (mesh_.page_of(t) != page_ || sources_[source].image == nullptr) continue;
       const Footprint footprint = footprint_of(source_texels_per_texel(textured(t, source)));
       levels[source] = std::max(levels[source], footprint.level + 1);
     }
@@ -84,19 +86,10 @@ private:
     }
   }
 
-  [[nodiscard]] std::array<RasterPoint, 3> in_atlas(std::uint32_t t) const {
-    std::array<RasterPoint, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec2f& uv = mesh_.vertices[mesh_.triangles[t][k]].uv;
-      corners[k] = {double{uv.x} * layout_.width, double{uv.y} * layout_.height};
-    }
-    return corners;
-  }
-
   [[nodiscard]] TexturedTriangle textured(std::uint32_t t, std::uint32_t source) const {
     const BaseColorSource& s = sources_[source];
     const auto& m = s.transform;
-    TexturedTriangle triangle{in_atlas(t), {}};
+    TexturedTriangle triangle{in_page(mesh_, t), {}};
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec2f& uv = uv_[mesh_.triangles[t][k]];
       triangle.source[k] = {(double{m[0]} * uv.x + double{m[1]} * uv.y + m[2]) * s.image->width,
@@ -106,14 +99,14 @@ private:
   }
 
   void fill(std::uint32_t t, const std::array<float, 4>& color) {
-    rasterize(in_atlas(t), layout_.width, layout_.height,
+    rasterize(in_page(mesh_, t), image_.width, image_.height,
               [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>&) { store(color, image_, x, y); });
   }
 
   void resample(std::uint32_t t, std::uint32_t source) {
     const TexturedTriangle triangle = textured(t, source);
     const Footprint footprint = footprint_of(source_texels_per_texel(triangle));
-    rasterize(triangle.atlas, layout_.width, layout_.height,
+    rasterize(triangle.atlas, image_.width, image_.height,
               [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>& weights) {
                 store(mean(triangle, weights, footprint, samplers_[source]), image_, x, y);
               });
@@ -143,17 +136,6 @@ private:
     return sum;
   }
 
-  // How the barycentric weights change with a step in the atlas.
-  static std::array<double, 3> weight_step(const std::array<RasterPoint, 3>& p, double x, double y) {
-    const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
-    std::array<double, 3> step{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const RasterPoint &a = p[(k + 1) % 3], &b = p[(k + 2) % 3];
-      step[k] = ((b.x - a.x) * y - (b.y - a.y) * x) / area;
-    }
-    return step;
-  }
-
   static Light read(const TexturedTriangle& t, const std::array<double, 3>& weights, std::uint32_t level,
                     const Sampler& sampler) {
     double x = 0, y = 0;
@@ -167,10 +149,10 @@ private:
 
 } // namespace
 
-Image bake_base_color(const AtlasLayout& layout, const CutMesh& mesh, std::span<const Vec2f> uv,
+Image bake_base_color(const CutMesh& mesh, std::uint32_t page, std::span<const Vec2f> uv,
                       std::span<const std::uint32_t> source_of, std::span<const BaseColorSource> sources,
                       Progress& progress) {
-  return Baker(layout, mesh, uv, source_of, sources).run(progress);
+  return Baker(mesh, page, uv, source_of, sources).run(progress);
 }
 
 } // namespace orbis::texture

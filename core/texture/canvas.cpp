@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/texture/raster.h"
+#include "core/texture/page_raster.h"
 
 namespace orbis::texture {
 namespace {
@@ -176,22 +176,21 @@ void Canvas::paint_background() {
     }
 }
 
-void Canvas::draw(const Shape& shape, const Image& atlas, const Viewport& viewport) {
+void Canvas::draw(const Shape& shape, std::span<const Image> pages, const Viewport& viewport) {
   const std::vector<Projected> points = fitted(project_all(shape.positions), viewport);
   const auto& triangles = shape.mesh.triangles;
   const std::vector<Fragment> fragments = visible(triangles, points, width_, height_);
-  const Sampler sampler(atlas, Wrap::clamp, Wrap::clamp, mip_levels);
+  std::vector<Sampler> samplers;
+  for (const Image& page : pages) samplers.emplace_back(page, Wrap::clamp, Wrap::clamp, mip_levels);
   for (std::size_t i = 0; i < fragments.size(); ++i) {
     const Fragment& fragment = fragments[i];
     if (fragment.inverse_depth == 0) continue;
     const mesh::Triangle& triangle = triangles[fragment.triangle];
     const std::array<double, 3> weights{1.0 - fragment.b - fragment.c, fragment.b, fragment.c};
-    std::array<RasterPoint, 3> in_atlas;
+    const std::array<RasterPoint, 3> in_atlas = in_page(shape.mesh, fragment.triangle);
     RasterPoint at;
     Vec3d normal;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec2f& uv = shape.mesh.vertices[triangle[k]].uv;
-      in_atlas[k] = {double{uv.x} * atlas.width, double{uv.y} * atlas.height};
       at.x += weights[k] * in_atlas[k].x;
       at.y += weights[k] * in_atlas[k].y;
       normal += shape.normals[triangle[k]] * weights[k];
@@ -201,36 +200,8 @@ void Canvas::draw(const Shape& shape, const Image& atlas, const Viewport& viewpo
     const double length = norm(normal);
     normal = length > 0 ? normal * (facing / length) : view_z;
     const double level = mip_level_of(corners_of(triangle, points), in_atlas);
-    lights_[i] = shaded(between_levels(sampler, at.x, at.y, level), normal);
+    lights_[i] = shaded(between_levels(samplers[shape.mesh.page_of(fragment.triangle)], at.x, at.y, level), normal);
   }
-}
-
-void Canvas::draw_sphere(const Rotation& rotation, const Image& atlas, const Viewport& viewport) {
-  const AtlasLayout layout = layout_for(atlas.width);
-  const Sampler sampler(atlas, Wrap::clamp, Wrap::clamp, mip_levels);
-  const double radius = subpixels * (0.5 - margin) * std::min(viewport.width, viewport.height);
-  const double centre_x = subpixels * (viewport.x + 0.5 * viewport.width);
-  const double centre_y = subpixels * (viewport.y + 0.5 * viewport.height);
-  const double distance = eye_distance;
-  // On the image plane one unit before the eye the sphere is a disc of this radius.
-  const double disc = 1 / std::sqrt(distance * distance - 1);
-  const double finest = std::max(0.5 * layout.chart() / radius, 1.0);
-  for (std::uint32_t y = subpixels * viewport.y; y < subpixels * (viewport.y + viewport.height); ++y)
-    for (std::uint32_t x = subpixels * viewport.x; x < subpixels * (viewport.x + viewport.width); ++x) {
-      // The ray eye + s d, d = (u, v, -1), meets the sphere where s^2 |d|^2 - 2 s distance + distance^2 - 1 = 0.
-      const double u = disc * (x + 0.5 - centre_x) / radius, v = -disc * (y + 0.5 - centre_y) / radius;
-      const double square = u * u + v * v + 1;
-      const double discriminant = distance * distance - square * (distance * distance - 1);
-      if (discriminant <= 0) continue;
-      const double s = (distance - std::sqrt(discriminant)) / square;
-      const Vec3d normal = view_x * (s * u) + view_y * (s * v) + view_z * (distance - s);
-      const Vec3d d = rotation.inverse(normal);
-      const Face f = face_of(d);
-      const auto [atlas_x, atlas_y] = layout.texel_of(f, project(d, f));
-      const double slant = std::max(dot(normal, view_z), 0.25);
-      const double level = 0.5 * std::log2(finest * finest / slant);
-      lights_[std::size_t{y} * width_ + x] = shaded(between_levels(sampler, atlas_x, atlas_y, level), normal);
-    }
 }
 
 double aspect_of(const Shape& shape) {

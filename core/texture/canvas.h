@@ -1,11 +1,10 @@
-// A small software renderer: triangles with an atlas, a z-buffer, two lights.
+// A small software renderer: triangles with the pages of an atlas, a z-buffer, two lights.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "core/texture/alignment.h"
 #include "core/texture/atlas.h"
 #include "core/texture/image.h"
 #include "core/texture/sampler.h"
@@ -31,11 +30,9 @@ class Canvas {
 public:
   Canvas(std::uint32_t width, std::uint32_t height);
 
-  // Draws the shape so that it fills the viewport but for a margin. The shape keeps its own depth: viewports must not
-  // overlap.
-  void draw(const Shape& shape, const Image& atlas, const Viewport& viewport);
-  // The unit sphere as such, without any mesh: each point shows the atlas at its direction, turned back by `rotation`.
-  void draw_sphere(const Rotation& rotation, const Image& atlas, const Viewport& viewport);
+  // Draws the shape so that it fills the viewport but for a margin, with the atlas' pages on it. The shape keeps its
+  // own depth: viewports must not overlap.
+  void draw(const Shape& shape, std::span<const Image> pages, const Viewport& viewport);
   // Averages the sub-pixels. RGB.
   [[nodiscard]] Image picture() const;
 

@@ -1,11 +1,12 @@
 // The surface cut at the borders of the cube's faces: crossings once per edge, pieces once per triangle, then vertices
-// shared wherever point, face and input vertices agree.
+// shared wherever point, chart and input vertices agree.
+#include "core/texture/cut.h"
+
 #include <algorithm>
 #include <limits>
 #include <unordered_map>
 #include <utility>
 
-#include "core/texture/atlas.h"
 #include "core/texture/border_crossings.h"
 #include "core/texture/divide.h"
 #include "core/texture/unfold.h"
@@ -110,12 +111,26 @@ private:
   }
 };
 
+// The charts: one for each face that is used, numbered as they are met.
+class ChartTable {
+public:
+  std::uint32_t chart(Face face, std::vector<Chart>& charts) {
+    if (number_[face] == none) {
+      number_[face] = static_cast<std::uint32_t>(charts.size());
+      charts.emplace_back();
+    }
+    return number_[face];
+  }
+
+private:
+  std::array<std::uint32_t, face_count> number_{none, none, none, none, none, none};
+};
+
 // Finds the vertex of the result for (point, face, input vertices), or makes it.
 class VertexTable {
 public:
-  VertexTable(CutMesh& mesh, const AtlasLayout& layout, std::size_t input_vertices, std::size_t given_points,
-              std::size_t points)
-      : mesh_(mesh), layout_(layout), given_points_(given_points), at_input_(input_vertices, none),
+  VertexTable(CutMesh& mesh, std::size_t input_vertices, std::size_t given_points, std::size_t points)
+      : mesh_(mesh), given_points_(given_points), at_input_(input_vertices, none),
         at_added_(points - given_points, none) {}
 
   // a, b: the input vertices at the ends of the edge that the point lies on (equal at a corner and inside). One input
@@ -128,11 +143,12 @@ public:
         return i;
     const auto made = static_cast<Index>(mesh_.vertices.size());
     mesh_.vertices.push_back(v);
-    mesh_.vertices.back().uv = uv_of(v.sphere, face);
     copies_.push_back({first, a, b, face});
     first = made;
     return made;
   }
+
+  [[nodiscard]] Face face_of_copy(std::size_t v) const { return copies_[v].face; }
 
 private:
   // The vertices of one input vertex, or of one added point, form a chain: it has one link per face as a rule.
@@ -142,37 +158,86 @@ private:
     Face face;
   };
   CutMesh& mesh_;
-  const AtlasLayout& layout_;
   std::size_t given_points_;
   std::vector<std::uint32_t> at_input_, at_added_;
   std::vector<Copy> copies_;
+};
 
-  [[nodiscard]] Vec2f uv_of(const GridPoint& p, Face face) const {
-    const auto [x, y] = layout_.texel_of(face, project(p, face));
-    return {static_cast<float>(x / layout_.width), static_cast<float>(y / layout_.height)};
+// Lays the vertices into the squares of their faces.
+class Flattener {
+public:
+  Flattener(FlatCharts& charts, const VertexTable& table)
+      : charts_(charts), table_(table), faces_(charts.mesh.points), first_(charts.mesh.points, none) {}
+
+  void run() {
+    const std::vector<CutVertex>& vertices = charts_.mesh.vertices;
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+      FaceMask& faces = faces_[vertices[v].point];
+      faces = static_cast<FaceMask>(faces | bit_of(table_.face_of_copy(v)));
+    }
+    for (std::size_t v = 0; v < vertices.size(); ++v)
+      charts_.place_of.push_back(place(vertices[v], table_.face_of_copy(v)));
+    for (std::size_t t = 0; t < charts_.mesh.triangles.size(); ++t) {
+      const auto& [a, b, c] = charts_.mesh.triangles[t];
+      charts_.triangles.push_back({charts_.place_of[a], charts_.place_of[b], charts_.place_of[c]});
+      for (const Index p : charts_.triangles.back()) charts_.places[p].chart = charts_.mesh.chart[t];
+    }
+  }
+
+private:
+  FlatCharts& charts_;
+  const VertexTable& table_;
+  std::vector<FaceMask> faces_;      // point -> the faces it has copies in
+  std::vector<std::uint32_t> first_; // point -> its first place; the others follow in a chain
+  std::vector<std::uint32_t> next_;
+  std::vector<Face> face_;
+
+  std::uint32_t place(const CutVertex& v, Face face) {
+    for (std::uint32_t i = first_[v.point]; i != none; i = next_[i])
+      if (face_[i] == face) return i;
+    const auto made = static_cast<std::uint32_t>(charts_.places.size());
+    charts_.places.push_back(flat(v, face));
+    next_.push_back(std::exchange(first_[v.point], made));
+    face_.push_back(face);
+    return made;
+  }
+
+  // A point that several faces have lies on the border between them, exactly.
+  [[nodiscard]] FlatPlace flat(const CutVertex& v, Face face) const {
+    const FacePoint p = project(v.sphere, face);
+    FlatPlace place{{0.5 * (p.u + 1), 0.5 * (p.v + 1)}, false, false, 0};
+    const auto fix = [&](Face side, double& coordinate, double value, bool& fixed) {
+      if ((faces_[v.point] & bit_of(side)) == 0) return;
+      coordinate = value;
+      fixed = true;
+    };
+    fix(opposite(face_right[face]), place.at.x, 0, place.fixed_x);
+    fix(face_right[face], place.at.x, 1, place.fixed_x);
+    fix(opposite(face_down[face]), place.at.y, 0, place.fixed_y);
+    fix(face_down[face], place.at.y, 1, place.fixed_y);
+    return place;
   }
 };
 
 class Writer {
 public:
-  Writer(std::span<const Triangle> triangles, std::span<const Triangle> corners, std::span<const GridPoint> sphere,
-         const AtlasLayout& layout, const Divisions& divisions)
-      : triangles_(triangles), corners_(corners), sphere_(sphere),
-        table_(mesh_, layout, input_vertices(corners), sphere.size(), divisions.points()) {
+  Writer(const AtlasComponent& component, const Divisions& divisions)
+      : component_(component), corners_(all_corners(component)),
+        table_(mesh_, input_vertices(corners_), component.sphere.size(), divisions.points()) {
     mesh_.points = divisions.points();
     mesh_.cut_triangles = divisions.entries().size();
-    const std::size_t expected = triangles.size() + 4 * divisions.entries().size();
-    mesh_.vertices.reserve(at_least_one_per(corners) + 4 * divisions.entries().size());
+    const std::size_t expected = component.triangles.size() + 4 * divisions.entries().size();
+    mesh_.vertices.reserve(at_least_one_per(corners_) + 4 * divisions.entries().size());
     mesh_.triangles.reserve(expected);
     mesh_.parent.reserve(expected);
-    mesh_.face.reserve(expected);
+    mesh_.chart.reserve(expected);
   }
 
   void whole(std::uint32_t t, Face face) {
     Triangle vertices{};
     for (std::size_t k = 0; k < 3; ++k) {
-      const Index point = triangles_[t][k], input = corners_[t][k];
-      CutVertex v{t, {}, sphere_[point], {}, point};
+      const Index point = component_.triangles[t][k], input = corners_[t][k];
+      CutVertex v{t, {}, component_.sphere[point], {}, point};
       v.barycentric[k] = 1;
       vertices[k] = table_.vertex(v, face, input, input);
     }
@@ -191,14 +256,30 @@ public:
     }
   }
 
-  CutMesh take() { return std::move(mesh_); }
+  FlatCharts take() {
+    FlatCharts out;
+    out.mesh = std::move(mesh_);
+    Flattener(out, table_).run();
+    return out;
+  }
 
 private:
-  std::span<const Triangle> triangles_, corners_;
-  std::span<const GridPoint> sphere_;
+  const AtlasComponent& component_;
+  std::vector<Triangle> corners_;
   CutMesh mesh_;
+  ChartTable charts_;
   VertexTable table_;
 
+  // Triangles that only close holes have no input vertices: their own ones stand for them, numbered behind.
+  static std::vector<Triangle> all_corners(const AtlasComponent& component) {
+    std::vector<Triangle> corners(component.corners.begin(), component.corners.end());
+    const auto first = static_cast<Index>(input_vertices(corners));
+    for (std::size_t t = corners.size(); t < component.triangles.size(); ++t) {
+      const auto& [a, b, c] = component.triangles[t];
+      corners.push_back({first + a, first + b, first + c});
+    }
+    return corners;
+  }
   static std::size_t input_vertices(std::span<const Triangle> corners) {
     Index highest = 0;
     for (const Triangle& t : corners) highest = std::max({highest, t[0], t[1], t[2]});
@@ -210,15 +291,16 @@ private:
 
   [[nodiscard]] std::pair<Index, Index> input_edge(std::uint32_t t, Site site) const {
     const auto k = static_cast<std::size_t>(site);
-    if (site == Site::inside) return {corners_[t][0], corners_[t][0]};
-    if (site < Site::edge_01) return {corners_[t][k], corners_[t][k]};
-    return {corners_[t][k - 3], corners_[t][(k - 2) % 3]};
+    const Triangle& corners = corners_[t];
+    if (site == Site::inside) return {corners[0], corners[0]};
+    if (site < Site::edge_01) return {corners[k], corners[k]};
+    return {corners[k - 3], corners[(k - 2) % 3]};
   }
 
   void append(const Triangle& vertices, std::uint32_t parent, Face face) {
     mesh_.triangles.push_back(vertices);
     mesh_.parent.push_back(parent);
-    mesh_.face.push_back(face);
+    mesh_.chart.push_back(charts_.chart(face, mesh_.charts));
   }
 };
 
@@ -239,32 +321,30 @@ Face deepest_face(FaceMask faces, const Triangle& t, std::span<const GridPoint> 
 
 } // namespace
 
-CutMesh cut(std::span<const Triangle> triangles, std::span<const Triangle> corners, std::span<const GridPoint> sphere,
-            const AtlasLayout& layout, Progress& progress) {
-  const auto count = static_cast<std::uint32_t>(triangles.size());
+FlatCharts cut(const AtlasComponent& component, Progress& progress) {
+  const auto count = static_cast<std::uint32_t>(component.triangles.size());
   const auto step = [&](std::uint32_t t, std::uint64_t done) {
     if (t % report_interval != 0) return;
     progress.check();
     progress.report(Stage::atlas, done, 2 * std::uint64_t{count});
   };
 
-  Divisions divisions(triangles, sphere);
+  Divisions divisions(component.triangles, component.sphere);
   for (std::uint32_t t = 0; t < count; ++t) {
     step(t, t);
     if (divisions.common_faces(t) == 0) divisions.divide_triangle(t);
   }
   divisions.settle();
 
-  Writer writer(triangles, corners, sphere, layout, divisions);
+  Writer writer(component, divisions);
   auto entry = divisions.entries().begin();
   for (std::uint32_t t = 0; t < count; ++t) {
     step(t, std::uint64_t{count} + t);
     if (const FaceMask faces = divisions.common_faces(t); faces != 0)
-      writer.whole(t, deepest_face(faces, triangles[t], sphere));
+      writer.whole(t, deepest_face(faces, component.triangles[t], component.sphere));
     else
       writer.pieces(*entry++);
   }
-  progress.report(Stage::atlas, 2 * std::uint64_t{count}, 2 * std::uint64_t{count});
   return writer.take();
 }
 

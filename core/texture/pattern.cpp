@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 
 #include "core/texture/bake.h"
 #include "core/texture/color.h"
+#include "core/texture/cube_map.h"
 #include "core/texture/lettering.h"
 
 namespace orbis::texture {
@@ -26,11 +28,10 @@ constexpr Rgb border_color{38, 42, 52};
 
 class FacePainter {
 public:
-  FacePainter(const AtlasLayout& layout, Face face, Image& image)
-      : image_(image), side_(layout.chart()), left_(layout.chart_x(face)), top_(layout.chart_y(face)),
-        palette_(palettes[face]), fields_(side_ >= 128  ? 8
-                                          : side_ >= 48 ? 4
-                                                        : 2),
+  FacePainter(Face face, Image& image)
+      : image_(image), side_(image.width), palette_(palettes[face]), fields_(side_ >= 128  ? 8
+                                                                             : side_ >= 48 ? 4
+                                                                                           : 2),
         field_(static_cast<double>(side_) / fields_) {}
 
   void paint() {
@@ -42,7 +43,7 @@ public:
 
 private:
   Image& image_;
-  std::uint32_t side_, left_, top_;
+  std::uint32_t side_;
   const Palette& palette_;
   int fields_;   // a side
   double field_; // texels a field
@@ -50,7 +51,7 @@ private:
   [[nodiscard]] static bool is_light(int column, int row) { return (column + row) % 2 == 0; }
 
   void blend(std::uint32_t x, std::uint32_t y, const Rgb& color, float t) {
-    std::uint8_t* texel = image_.at(left_ + x, top_ + y);
+    std::uint8_t* texel = image_.at(x, y);
     const Rgb result = mixed({texel[0], texel[1], texel[2]}, color, t);
     std::copy(result.begin(), result.end(), texel);
   }
@@ -61,7 +62,7 @@ private:
     for (std::uint32_t y = 0; y < side_; ++y)
       for (std::uint32_t x = 0; x < side_; ++x) {
         const Rgb& color = is_light(field[x], field[y]) ? palette_.light : palette_.full;
-        std::copy(color.begin(), color.end(), image_.at(left_ + x, top_ + y));
+        std::copy(color.begin(), color.end(), image_.at(x, y));
       }
   }
 
@@ -111,19 +112,29 @@ private:
   }
 };
 
+// A side of a face about as many texels long as the largest component's share of the page lets it appear.
+std::uint32_t side_for(const CutMesh& mesh, std::uint32_t page) {
+  constexpr double smallest = 64, largest = 2048;
+  std::map<std::uint32_t, double> texels; // by component
+  for (const Chart& c : mesh.charts)
+    if (c.page == page) texels[c.component] += static_cast<double>(c.width) * c.height;
+  double most = 0;
+  for (const auto& [component, count] : texels) most = std::max(most, count);
+  return static_cast<std::uint32_t>(std::clamp(std::sqrt(most / face_count), smallest, largest));
+}
+
 } // namespace
 
-Image bake_pattern(const AtlasLayout& layout, Progress& progress) {
-  Image image{layout.width, layout.height, 3, {}};
-  image.pixels.resize(std::size_t{layout.width} * layout.height * image.channels);
+Image bake_pattern(const CutMesh& mesh, std::uint32_t page, Progress& progress) {
+  std::vector<Image> faces;
+  const std::uint32_t side = side_for(mesh, page);
   for (Face f = 0; f < face_count; ++f) {
     progress.check();
-    progress.report(Stage::bake, f, face_count);
-    FacePainter(layout, f, image).paint();
+    faces.push_back({side, side, 3, {}});
+    faces.back().pixels.resize(std::size_t{3} * side * side);
+    FacePainter(f, faces.back()).paint();
   }
-  fill_gutters(layout, image);
-  progress.report(Stage::bake, face_count, face_count);
-  return image;
+  return bake_cube_map(mesh, page, faces, progress);
 }
 
 } // namespace orbis::texture

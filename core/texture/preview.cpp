@@ -22,12 +22,82 @@ Shape model_shape(const mesh::TriangleMesh& surface, const CutMesh& mesh) {
   return {mesh, std::move(positions), std::move(normals)};
 }
 
+std::uint32_t component_with_most_texels(const CutMesh& mesh) {
+  std::vector<double> texels;
+  for (const Chart& c : mesh.charts) {
+    if (c.component >= texels.size()) texels.resize(c.component + 1);
+    texels[c.component] += static_cast<double>(c.width) * c.height;
+  }
+  return static_cast<std::uint32_t>(std::max_element(texels.begin(), texels.end()) - texels.begin());
+}
+
+// One component's triangles on its sphere, split until they look round.
+class RoundMesh {
+public:
+  RoundMesh(const CutMesh& mesh, std::uint32_t component) {
+    mesh_.charts = mesh.charts;
+    mesh_.pages = mesh.pages;
+    mesh_.points = mesh.points;
+    mesh_.vertices = mesh.vertices;
+    for (const CutVertex& v : mesh.vertices) points_.push_back(normalized(Vec3d(sphere::from_grid(v.sphere))));
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      if (mesh.charts[mesh.chart[t]].component == component) split(mesh.triangles[t], mesh.chart[t]);
+  }
+
+  [[nodiscard]] Shape shape(const Rotation& rotation) const {
+    Shape out{mesh_, {}, {}};
+    for (const Vec3d& p : points_) out.positions.push_back(rotation(p));
+    out.normals = out.positions;
+    return out;
+  }
+
+private:
+  CutMesh mesh_;
+  std::vector<Vec3d> points_;
+
+  // The longest edge is halved while it is too long. Whether an edge is does not depend on the triangle, so neighbours
+  // agree.
+  void split(const mesh::Triangle& triangle, std::uint32_t chart) {
+    constexpr double longest_edge = 0.06; // radians
+    std::size_t longest = 0;
+    std::array<double, 3> length{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      length[k] = squared_norm(points_[triangle[k]] - points_[triangle[(k + 1) % 3]]);
+      if (length[k] > length[longest]) longest = k;
+    }
+    if (length[longest] <= longest_edge * longest_edge) {
+      mesh_.triangles.push_back(triangle);
+      mesh_.chart.push_back(chart);
+      return;
+    }
+    const mesh::Index a = triangle[longest], b = triangle[(longest + 1) % 3], c = triangle[(longest + 2) % 3];
+    const mesh::Index middle = halfway(a, b);
+    split({a, middle, c}, chart);
+    split({middle, b, c}, chart);
+  }
+
+  // Texture coordinates follow the chord, as they do in the triangle.
+  mesh::Index halfway(mesh::Index a, mesh::Index b) {
+    const Vec3d p =
+        Vec3d(sphere::from_grid(mesh_.vertices[a].sphere)) + Vec3d(sphere::from_grid(mesh_.vertices[b].sphere));
+    CutVertex v = mesh_.vertices[a];
+    const Vec2f &u = mesh_.vertices[a].uv, &w = mesh_.vertices[b].uv;
+    v.uv = {(u.x + w.x) / 2, (u.y + w.y) / 2};
+    v.sphere = sphere::to_grid(p * 0.5);
+    mesh_.vertices.push_back(v);
+    points_.push_back(normalized(p));
+    return static_cast<mesh::Index>(points_.size() - 1);
+  }
+};
+
 // Turns the sphere so that each point lies, as far as it goes, on the side of the model that it belongs to.
-Rotation towards_model(const CutMesh& mesh, const Shape& model) {
+Rotation towards_model(const CutMesh& mesh, const Shape& model, std::uint32_t component) {
   std::vector<double> area(mesh.vertices.size());
   Vec3d centre;
   double total = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (mesh.charts[mesh.chart[t]].component != component) continue;
+    const auto& [a, b, c] = mesh.triangles[t];
     const auto& p = model.positions;
     const double third = norm(cross(p[b] - p[a], p[c] - p[a])) / 6;
     for (const mesh::Index v : {a, b, c}) {
@@ -47,30 +117,33 @@ Rotation towards_model(const CutMesh& mesh, const Shape& model) {
 
 } // namespace
 
-Image draw_model(const mesh::TriangleMesh& surface, const CutMesh& mesh, const Image& atlas, std::uint32_t width,
-                 std::uint32_t height) {
+Image draw_model(const mesh::TriangleMesh& surface, const CutMesh& mesh, std::span<const Image> pages,
+                 std::uint32_t width, std::uint32_t height) {
   Canvas canvas(width, height);
-  canvas.draw(model_shape(surface, mesh), atlas, {0, 0, width, height});
+  canvas.draw(model_shape(surface, mesh), pages, {0, 0, width, height});
   return canvas.picture();
 }
 
-Image draw_sphere(const Image& atlas, std::uint32_t width, std::uint32_t height) {
+Image draw_sphere(const CutMesh& mesh, std::span<const Image> pages, std::uint32_t width, std::uint32_t height) {
   Canvas canvas(width, height);
-  canvas.draw_sphere(Rotation{}, atlas, {0, 0, width, height});
+  const RoundMesh round(mesh, component_with_most_texels(mesh));
+  canvas.draw(round.shape(Rotation{}), pages, {0, 0, width, height});
   return canvas.picture();
 }
 
-Image draw_side_by_side(const mesh::TriangleMesh& surface, const CutMesh& mesh, const Image& atlas, std::uint32_t width,
-                        std::uint32_t height) {
+Image draw_side_by_side(const mesh::TriangleMesh& surface, const CutMesh& mesh, std::span<const Image> pages,
+                        std::uint32_t width, std::uint32_t height) {
   Canvas canvas(width, height);
   const Shape model = model_shape(surface, mesh);
+  const std::uint32_t component = component_with_most_texels(mesh);
+  const RoundMesh round(mesh, component);
   // The model gets the width that it needs at full height, the sphere a square, and what is left over goes around them.
   const double wanted = std::clamp(aspect_of(model), 0.6, 2.0);
   const double side = std::min<double>(height, width / (1 + wanted));
   const auto left = static_cast<std::uint32_t>(side), right = static_cast<std::uint32_t>(wanted * side);
   const std::uint32_t gap = (width - left - right) / 3;
-  canvas.draw_sphere(towards_model(mesh, model), atlas, {gap, 0, left, height});
-  canvas.draw(model, atlas, {2 * gap + left, 0, right, height});
+  canvas.draw(round.shape(towards_model(mesh, model, component)), pages, {gap, 0, left, height});
+  canvas.draw(model, pages, {2 * gap + left, 0, right, height});
   return canvas.picture();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "core/mesh/triangle_mesh.h"
 #include "core/texture/atlas.h"
@@ -9,17 +10,18 @@
 
 namespace orbis::texture {
 
-// surface: what was given to cut(); mesh: its result; atlas: of its layout. width x height pixels, 8 to 8192 each. RGB.
-// The view is from the front (+Z), a little from the right and above, with the model filling the picture.
-[[nodiscard]] Image draw_model(const mesh::TriangleMesh& surface, const CutMesh& mesh, const Image& atlas,
+// surface: what the atlas was made for; mesh: the result; pages: its images. width x height pixels, 8 to 8192 each.
+// RGB. The view is from the front (+Z), a little from the right and above, with the model filling the picture.
+[[nodiscard]] Image draw_model(const mesh::TriangleMesh& surface, const CutMesh& mesh, std::span<const Image> pages,
                                std::uint32_t width, std::uint32_t height);
 
-// The sphere with the atlas, from the same side.
-[[nodiscard]] Image draw_sphere(const Image& atlas, std::uint32_t width, std::uint32_t height);
+// The sphere of the component with most texels, from the same side.
+[[nodiscard]] Image draw_sphere(const CutMesh& mesh, std::span<const Image> pages, std::uint32_t width,
+                                std::uint32_t height);
 
 // Left the sphere, right the model: the same texture on both is the parametrization. The sphere is turned so that its
 // points lie, as far as it goes, on the side of the model that they belong to.
-[[nodiscard]] Image draw_side_by_side(const mesh::TriangleMesh& surface, const CutMesh& mesh, const Image& atlas,
-                                      std::uint32_t width, std::uint32_t height);
+[[nodiscard]] Image draw_side_by_side(const mesh::TriangleMesh& surface, const CutMesh& mesh,
+                                      std::span<const Image> pages, std::uint32_t width, std::uint32_t height);
 
 } // namespace orbis::texture

@@ -160,7 +160,7 @@ async function showResult(state) {
     ["Degree of the map", certificate.degree.toFixed(9)],
     ["Angles: quasi-conformal distortion, mean (1 is best)", distortion.quasi_conformal_mean?.toFixed(3) ?? "–"],
     ["Lengths: symmetric Dirichlet energy (1 is best)", distortion.symmetric_dirichlet?.toFixed(3) ?? "–"],
-    ["Atlas", `${report.atlas.width} × ${report.atlas.height}, ${(100 * report.atlas.utilisation).toFixed(0)} % used`],
+    ["Atlas", `${report.atlas.pages.map((page) => `${page.width} × ${page.height}`).join(", ")}, ${(100 * report.atlas.utilisation).toFixed(0)} % used`],
   ]);
   const stages = state.timing.stages.map((s) => [s.name, milliseconds(s.wall_ms), milliseconds(s.cpu_ms)]);
   fillTable($("timings"), [...stages, ["in all", milliseconds(state.timing.wall_ms), milliseconds(state.timing.cpu_ms)]]);

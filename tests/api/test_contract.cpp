@@ -74,7 +74,7 @@ TEST_CASE("the stage index counts from 1 to the number of stages") {
 TEST_CASE("a report has the contract's shape") {
   Report report;
   report.format = "glb";
-  report.atlas.width = report.atlas.height = 2048;
+  report.atlas.pages = {{2048, 1024}};
   report.atlas.source = "pattern";
   report.stages = {{Stage::decode, 1.5, 1.0}, {Stage::certify, 2.5, 2.0}};
   report.notes = {{"turned", "2 triangles were turned", "/meshes/0"}};

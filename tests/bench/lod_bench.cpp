@@ -54,8 +54,9 @@ void measure(const std::string& path, const std::vector<double>& ratios, std::ui
   NoProgress progress;
   const sphere::Embedding embedding = sphere::embed_isometric(surface, Quality::standard, 0, progress);
   const sphere::Snapped snapped = sphere::snap(embedding.points, surface.triangles);
-  const texture::AtlasLayout layout = texture::layout_for(size);
-  const texture::CutMesh cut = texture::cut(surface.triangles, surface.triangles, snapped.points, layout, progress);
+  const texture::CutMesh cut = texture::make_atlas(
+      {surface.triangles, surface.triangles, snapped.points, surface.positions, surface.triangles.size()}, size,
+      progress);
   const std::vector<std::uint32_t> primitive_of(surface.triangles.size(), 0);
 
   std::vector<lod::Target> targets;
@@ -63,7 +64,8 @@ void measure(const std::string& path, const std::vector<double>& ratios, std::ui
     targets.push_back({static_cast<std::uint64_t>(r * static_cast<double>(surface.triangles.size())), 0});
   std::clock_t start = std::clock();
   const lod::FullSurface full(surface, primitive_of, cut);
-  const std::vector<lod::Level> levels = lod::simplify(full, targets, double(layout.gutter) / layout.width, progress);
+  const std::vector<lod::Level> levels =
+      lod::simplify(full, targets, double(cut.gutter) / cut.pages[0].width, progress);
   const double simplification = milliseconds_since(start);
   start = std::clock();
   mesh::ThreadPool threads(0);

@@ -66,7 +66,7 @@ Bytes write(const Asset& asset, std::vector<std::uint32_t> texcoords = {}) {
         primitives.back().attributes.push_back({name, ComponentType::f32, false, 2, test::Bytes(p.vertex_count() * 8)});
     }
   }
-  return write_asset(asset, primitives, {test::tiny_png(), "image/png"}, "{}", Compression::none);
+  return write_asset(asset, primitives, std::vector{NewImage{test::tiny_png(), "image/png"}}, "{}", Compression::none);
 }
 
 const Json& material_of(const Json& json, std::size_t primitive) {

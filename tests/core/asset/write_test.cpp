@@ -53,7 +53,7 @@ std::vector<NewPrimitive> with_atlas(const Asset& asset) {
   return out;
 }
 
-const NewImage atlas{test::tiny_png(), "image/png"};
+const std::vector<NewImage> atlas{{test::tiny_png(), "image/png"}};
 
 Bytes write(const Asset& asset, Compression compression = Compression::none) {
   return write_asset(asset, with_atlas(asset), atlas, R"({"version":"1"})", compression);

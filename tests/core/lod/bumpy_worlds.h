@@ -15,11 +15,10 @@ namespace orbis::lod_tests {
 struct World {
   mesh::TriangleMesh surface;
   std::vector<std::uint32_t> primitive_of;
-  texture::AtlasLayout layout = texture::layout_for(512);
   texture::CutMesh cut;
 
   [[nodiscard]] lod::FullSurface full() const { return {surface, primitive_of, cut}; }
-  [[nodiscard]] double gutter() const { return static_cast<double>(layout.gutter) / layout.width; }
+  [[nodiscard]] double gutter() const { return static_cast<double>(cut.gutter) / cut.pages[0].width; }
 };
 
 // A bumpy sphere of 8 * 4^subdivisions triangles. The map is its projection to the sphere, turned at random; the
@@ -48,7 +47,8 @@ inline World bumpy_world(int subdivisions, std::uint32_t seed, std::uint32_t mat
   for (std::size_t t = 0; t < corners.size(); ++t)
     for (mesh::Index& v : corners[t]) v += world.primitive_of[t] * count;
   NoProgress progress;
-  world.cut = texture::cut(world.surface.triangles, corners, grid, world.layout, progress);
+  world.cut = texture::make_atlas(
+      {world.surface.triangles, corners, grid, world.surface.positions, world.surface.triangles.size()}, 512, progress);
   return world;
 }
 
@@ -71,7 +71,9 @@ inline World pair_of(World a, const World& b, double scale) {
   for (const auto& [i, j, k] : b.cut.triangles)
     a.cut.triangles.push_back({i + cut_vertices, j + cut_vertices, k + cut_vertices});
   for (const std::uint32_t parent : b.cut.parent) a.cut.parent.push_back(parent + triangles);
-  a.cut.face.insert(a.cut.face.end(), b.cut.face.begin(), b.cut.face.end());
+  const auto charts = static_cast<std::uint32_t>(a.cut.charts.size());
+  for (const std::uint32_t chart : b.cut.chart) a.cut.chart.push_back(charts + chart);
+  a.cut.charts.insert(a.cut.charts.end(), b.cut.charts.begin(), b.cut.charts.end());
   a.cut.points += b.cut.points;
   return a;
 }

@@ -7,8 +7,10 @@
 #include <numbers>
 #include <random>
 
+#include "atlas_of.h"
 #include "core/texture/bake.h"
 #include "core/texture/color.h"
+#include "core/texture/cube_map.h"
 #include "core/texture/sampler.h"
 #include "sphere_meshes.h"
 
@@ -39,14 +41,16 @@ Image face_image(Face f, std::uint32_t width, std::uint32_t height, std::uint32_
   return image;
 }
 
-// The largest difference of any texel, gutters included, from the colour of its direction.
-int worst_difference(const AtlasLayout& layout, const Image& image) {
+// The largest difference of any covered texel from the colour of its direction.
+int worst_difference(const CutMesh& mesh, const Image& image) {
+  const std::vector<Vec3d> shown = directions(mesh);
   Image expected = blank(1, 1, image.channels);
   int worst = 0;
-  for (std::uint32_t y = 0; y < layout.height; ++y)
-    for (std::uint32_t x = 0; x < layout.width; ++x) {
-      const Face f = layout.face_at(x, y);
-      store(color_at(direction(f, layout.face_point(f, x + 0.5, y + 0.5))), expected, 0, 0);
+  for (std::uint32_t y = 0; y < image.height; ++y)
+    for (std::uint32_t x = 0; x < image.width; ++x) {
+      const Vec3d& d = shown[std::size_t{y} * image.width + x];
+      if (d == Vec3d{}) continue;
+      store(color_at(d), expected, 0, 0);
       for (std::size_t c = 0; c < image.channels; ++c)
         worst = std::max(worst, std::abs(image.at(x, y)[c] - expected.at(0, 0)[c]));
     }
@@ -55,15 +59,11 @@ int worst_difference(const AtlasLayout& layout, const Image& image) {
 
 struct Scene {
   SphereMesh mesh;
-  AtlasLayout layout;
   CutMesh cut_mesh;
   std::vector<std::uint32_t> source_of;
 
   Scene(SphereMesh sphere, std::uint32_t texture_size)
-      : mesh(std::move(sphere)), layout(layout_for(texture_size)), source_of(mesh.triangles.size(), 0) {
-    NoProgress progress;
-    cut_mesh = cut(mesh.triangles, mesh.triangles, mesh.grid(), layout, progress);
-  }
+      : mesh(std::move(sphere)), cut_mesh(atlas_of(mesh, texture_size)), source_of(mesh.triangles.size(), 0) {}
 
   // Texture coordinates that are linear on each input triangle, as glTF's are.
   template <class F> [[nodiscard]] std::vector<Vec2f> uv(F at_corner) const {
@@ -81,7 +81,7 @@ struct Scene {
   }
   [[nodiscard]] Image bake(const std::vector<Vec2f>& coordinates, std::span<const BaseColorSource> sources) const {
     NoProgress progress;
-    return bake_base_color(layout, cut_mesh, coordinates, source_of, sources, progress);
+    return bake_base_color(cut_mesh, 0, coordinates, source_of, sources, progress);
   }
 };
 
@@ -98,10 +98,10 @@ TEST_CASE("six images of any sizes are reproduced by direction, without a seam a
     CAPTURE(size);
     std::vector<Image> images;
     for (Face f = 0; f < face_count; ++f) images.push_back(face_image(f, size + 5 * f, size + 3, 3));
-    const AtlasLayout layout = layout_for(384);
-    const Image atlas = bake_cube_map(layout, images, progress);
+    const CutMesh mesh = atlas_of(subdivided(icosahedron(), 2), 384);
+    const Image atlas = bake_cube_map(mesh, 0, images, progress);
     CHECK(atlas.channels == 3);
-    CHECK(worst_difference(layout, atlas) <= 4);
+    CHECK(worst_difference(mesh, atlas) <= 4);
   }
 }
 
@@ -118,19 +118,19 @@ TEST_CASE("one equirectangular image is reproduced by direction: +Z in its middl
                         std::cos(longitude) * std::cos(latitude)}),
               globe, x, y);
       }
-    const AtlasLayout layout = layout_for(384);
-    const Image atlas = bake_cube_map(layout, std::span(&globe, 1), progress);
+    const CutMesh mesh = atlas_of(subdivided(icosahedron(), 2), 384);
+    const Image atlas = bake_cube_map(mesh, 0, std::span(&globe, 1), progress);
     CHECK(atlas.channels == 4);
-    CHECK(worst_difference(layout, atlas) <= 4);
+    CHECK(worst_difference(mesh, atlas) <= 4);
   }
 }
 
 TEST_CASE("any other number of images, or one without pixels, is refused") {
   NoProgress progress;
   std::vector<Image> images(2, face_image(0, 8, 8, 3));
-  CHECK_THROWS_AS((void)bake_cube_map(layout_for(64), images, progress), Error);
+  CHECK_THROWS_AS((void)bake_cube_map(atlas_of(octahedron(), 64), 0, images, progress), Error);
   images.assign(1, Image{});
-  CHECK_THROWS_AS((void)bake_cube_map(layout_for(64), images, progress), Error);
+  CHECK_THROWS_AS((void)bake_cube_map(atlas_of(octahedron(), 64), 0, images, progress), Error);
 }
 
 TEST_CASE("the base colour is what the input showed at that point of the surface") {
@@ -162,8 +162,8 @@ TEST_CASE("the base colour is what the input showed at that point of the surface
       double x = 0, y = 0, u = 0, v = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         const CutVertex& corner = scene.cut_mesh.vertices[t[k]];
-        x += w[k] / sum * corner.uv.x * scene.layout.width;
-        y += w[k] / sum * corner.uv.y * scene.layout.height;
+        x += w[k] / sum * corner.uv.x * atlas.width;
+        y += w[k] / sum * corner.uv.y * atlas.height;
         u += w[k] / sum * uv[t[k]].x;
         v += w[k] / sum * uv[t[k]].y;
       }
@@ -171,8 +171,7 @@ TEST_CASE("the base colour is what the input showed at that point of the surface
       // Triangles of some size: in small ones bilinear reads reach over their edges.
       const Vec2f &p = scene.cut_mesh.vertices[t[0]].uv, &q = scene.cut_mesh.vertices[t[1]].uv,
                   &r = scene.cut_mesh.vertices[t[2]].uv;
-      const double area =
-          double{std::abs((q.x - p.x) * (r.y - p.y) - (r.x - p.x) * (q.y - p.y))} * 512 * scene.layout.height;
+      const double area = double{std::abs((q.x - p.x) * (r.y - p.y) - (r.x - p.x) * (q.y - p.y))} * 512 * atlas.height;
       if (area < 300) continue;
       const Light seen = shown.sample(x, y, 0), expected = ramp(u, v);
       for (std::size_t c = 0; c < 3; ++c) worst = std::max(worst, std::abs(to_srgb(seen[c]) - to_srgb(expected[c])));
@@ -234,9 +233,10 @@ TEST_CASE("each input triangle takes its own source, and a flat colour where the
   const Image atlas = scene.bake(scene.uv(half_image), sources);
   REQUIRE(atlas.channels == 4);
   std::array<std::size_t, 2> found{};
+  const std::vector<Vec3d> shown = directions(scene.cut_mesh);
   for (std::uint32_t y = 0; y < atlas.height; ++y)
     for (std::uint32_t x = 0; x < atlas.width; ++x) {
-      if (!scene.layout.in_chart(x, y)) continue;
+      if (shown[std::size_t{y} * atlas.width + x] == Vec3d{}) continue;
       const std::uint8_t* p = atlas.at(x, y);
       const bool red = p[0] == 255 && p[2] == 0 && p[3] == 255, blue = p[0] == 0 && p[2] == 255 && p[3] == 128;
       CHECK(red != blue);
@@ -258,10 +258,12 @@ TEST_CASE("baking twice gives the same bytes, and stops when it is asked to") {
     void report(Stage, std::uint64_t, std::uint64_t) override {}
     [[nodiscard]] bool cancelled() const override { return true; }
   } canceled;
-  CHECK_THROWS_AS((void)bake_pattern(scene.layout, canceled), Error);
-  CHECK_THROWS_AS((void)bake_cube_map(scene.layout, std::span(&image, 1), canceled), Error);
-  CHECK_THROWS_AS(
-      (void)bake_base_color(scene.layout, scene.cut_mesh, uv, scene.source_of, std::span(&source, 1), canceled), Error);
-  CHECK_THROWS_AS((void)cut(scene.mesh.triangles, scene.mesh.triangles, scene.mesh.grid(), scene.layout, canceled),
+  CHECK_THROWS_AS((void)bake_pattern(scene.cut_mesh, 0, canceled), Error);
+  CHECK_THROWS_AS((void)bake_cube_map(scene.cut_mesh, 0, std::span(&image, 1), canceled), Error);
+  CHECK_THROWS_AS((void)bake_base_color(scene.cut_mesh, 0, uv, scene.source_of, std::span(&source, 1), canceled),
+                  Error);
+  const std::vector<GridPoint> grid = scene.mesh.grid();
+  const std::vector<Vec3f> positions(grid.size());
+  CHECK_THROWS_AS((void)make_atlas({scene.mesh.triangles, scene.mesh.triangles, grid, positions, 1}, 64, canceled),
                   Error);
 }

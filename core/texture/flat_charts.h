@@ -1,0 +1,40 @@
+// The charts of a component between the cut and the atlas: flat, not yet in a page.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/texture/atlas.h"
+
+namespace orbis::texture {
+
+struct FlatPoint {
+  double x = 0, y = 0; // y down, as in the page
+};
+
+// A point of the surface in one chart: all vertices there, whatever input vertex they come from, share it.
+struct FlatPlace {
+  FlatPoint at; // [0, 1] in both directions
+  // On the chart's left or right side, and on its upper or lower one: there x, or y, is 0 or 1 and stays so.
+  bool fixed_x = false, fixed_y = false;
+  std::uint32_t chart = 0;
+};
+
+struct FlatCharts {
+  // Charts without a rectangle, vertices without uv; numbered within the component; with the triangles that only close
+  // holes.
+  CutMesh mesh;
+  std::vector<FlatPlace> places;
+  std::vector<std::uint32_t> place_of;   // vertex -> place
+  std::vector<mesh::Triangle> triangles; // mesh.triangles as places
+  struct Size {
+    double width = 1, height = 1; // of a chart, in the units of the surface
+  };
+  std::vector<Size> sizes;    // one per chart
+  std::vector<bool> is_shown; // by chart: whether any of its triangles is delivered; others get no texels
+};
+
+// Cuts a component into charts and lays them flat. Throws as cut() does.
+[[nodiscard]] FlatCharts lay_flat(const AtlasComponent& component, Progress& progress);
+
+} // namespace orbis::texture

@@ -1,0 +1,249 @@
+#include "core/texture/plane_energy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "core/sphere/star_table.h"
+
+namespace orbis::texture {
+namespace {
+
+constexpr int most_halvings = 6;
+constexpr double worthwhile = 0.01;          // of a star's energy
+constexpr double smallest_eigenvalue = 1e-3; // in units of the largest one
+
+// E = D h(x): h = (x^3 + 4 x + 6/x + 4/x^3 + 1/x^5) / 32 and its derivatives.
+struct AreaFactor {
+  double h, h1, h2;
+
+  explicit AreaFactor(double x) {
+    const double i = 1 / x, i2 = i * i, x2 = x * x;
+    h = (x * (x2 + 4) + i * (6 + i2 * (4 + i2))) / 32;
+    h1 = (3 * x2 + 4 - i2 * (6 + i2 * (12 + 5 * i2))) / 32;
+    h2 = (6 * x + i * i2 * (12 + i2 * (48 + 30 * i2))) / 32;
+  }
+};
+
+// A triangle (p, a, b) of the star of p.
+struct Term {
+  FlatPoint a, b;
+  double cot_a, cot_b; // at a (opposite the edge p b) and at b (opposite p a)
+  double fixed;        // 1/2 cot_p |a - b|^2
+  double scale;        // 1 / (2 A)
+};
+
+double squared(double x, double y) { return x * x + y * y; }
+
+struct Expansion {
+  double energy = 0, gx = 0, gy = 0, hxx = 0, hxy = 0, hyy = 0;
+};
+
+// With the other corners fixed V is linear in p and D quadratic.
+Expansion expand(std::span<const Term> star, const FlatPoint& p) {
+  Expansion out;
+  for (const Term& t : star) {
+    const double ux = t.a.x - p.x, uy = t.a.y - p.y, vx = t.b.x - p.x, vy = t.b.y - p.y;
+    const double D = 0.5 * (t.cot_b * squared(ux, uy) + t.cot_a * squared(vx, vy)) + t.fixed;
+    const double Dx = -(t.cot_b * ux + t.cot_a * vx), Dy = -(t.cot_b * uy + t.cot_a * vy);
+    const double Dxx = t.cot_a + t.cot_b;
+    const AreaFactor f(t.scale * (uy * vx - ux * vy));
+    const double Vx = t.scale * (vy - uy), Vy = t.scale * (ux - vx);
+    out.energy += D * f.h;
+    out.gx += f.h * Dx + D * f.h1 * Vx;
+    out.gy += f.h * Dy + D * f.h1 * Vy;
+    out.hxx += f.h * Dxx + 2 * f.h1 * Dx * Vx + D * f.h2 * Vx * Vx;
+    out.hyy += f.h * Dxx + 2 * f.h1 * Dy * Vy + D * f.h2 * Vy * Vy;
+    out.hxy += f.h1 * (Dx * Vy + Dy * Vx) + D * f.h2 * Vx * Vy;
+  }
+  return out;
+}
+
+// Infinite where a triangle is folded.
+double energy_at(std::span<const Term> star, const FlatPoint& p) {
+  double sum = 0;
+  for (const Term& t : star) {
+    const double ux = t.a.x - p.x, uy = t.a.y - p.y, vx = t.b.x - p.x, vy = t.b.y - p.y;
+    const double x = t.scale * (uy * vx - ux * vy);
+    if (!(x > 0)) return std::numeric_limits<double>::infinity();
+    sum += (0.5 * (t.cot_b * squared(ux, uy) + t.cot_a * squared(vx, vy)) + t.fixed) * AreaFactor(x).h;
+  }
+  return sum;
+}
+
+// -H^-1 g with the eigenvalues of H replaced by their magnitudes, none below a part of the largest.
+FlatPoint descent(const Expansion& e) {
+  const double mean = 0.5 * (e.hxx + e.hyy), half = 0.5 * (e.hxx - e.hyy);
+  const double radius = std::hypot(half, e.hxy);
+  double large = std::abs(mean + radius), small = std::abs(mean - radius);
+  const double floor = smallest_eigenvalue * std::max(large, small);
+  if (!(floor > 0)) return {};
+  large = std::max(large, floor);
+  small = std::max(small, floor);
+  // The eigenvector of mean + radius has twice the angle of (half, hxy).
+  const double angle = 0.5 * std::atan2(e.hxy, half);
+  const double ex = std::cos(angle), ey = std::sin(angle);
+  const double along = (e.gx * ex + e.gy * ey) / large, across = (e.gy * ex - e.gx * ey) / small;
+  return {-(along * ex - across * ey), -(along * ey + across * ex)};
+}
+
+FlatPoint along_side(const Expansion& e, bool fixed_x, bool fixed_y) {
+  const auto step = [](double g, double h) { return h != 0 ? -g / std::abs(h) : 0.0; };
+  return {fixed_x ? 0 : step(e.gx, e.hxx), fixed_y ? 0 : step(e.gy, e.hyy)};
+}
+
+// The largest t in (0, 1] that leaves every triangle at least a tenth of its area.
+double step_to_fold(std::span<const Term> star, const FlatPoint& p, const FlatPoint& s) {
+  double t = 1;
+  for (const Term& term : star) {
+    const double V = doubled_area(p, term.a, term.b);
+    const double slope = s.x * (term.b.y - term.a.y) + s.y * (term.a.x - term.b.x);
+    if (V + t * slope < 0.1 * V) t = std::min(t, -0.9 * V / slope);
+  }
+  return t;
+}
+
+class Relaxation {
+public:
+  explicit Relaxation(PlaneMesh& mesh) : mesh_(mesh), awake_(mesh.points.size(), 1) {
+    std::vector<std::uint32_t> all(mesh.triangles.size());
+    std::iota(all.begin(), all.end(), 0U);
+    stars_.build(mesh.triangles, all, mesh.points.size());
+  }
+
+  // Returns whether any point moved by what is worthwhile.
+  bool sweep() {
+    bool any = false;
+    for (mesh::Index v = 0; v < mesh_.points.size(); ++v) {
+      if (awake_[v] == 0 || (mesh_.fixed_x[v] && mesh_.fixed_y[v])) continue;
+      awake_[v] = 0;
+      if (!(move(v) > worthwhile)) continue;
+      any = true;
+      awake_[v] = 1;
+      for (const sphere::StarCorner& c : stars_[v]) awake_[c.next] = awake_[c.previous] = 1;
+    }
+    return any;
+  }
+
+private:
+  PlaneMesh& mesh_;
+  sphere::StarTable stars_;
+  std::vector<std::uint8_t> awake_;
+  std::vector<Term> star_;
+
+  void gather(mesh::Index v) {
+    star_.clear();
+    for (const sphere::StarCorner& c : stars_[v]) {
+      const PlaneReference& r = mesh_.references[c.slot()];
+      const std::size_t k = c.corner % 3;
+      const FlatPoint &a = mesh_.points[c.next], &b = mesh_.points[c.previous];
+      star_.push_back(
+          {a, b, r.cot[(k + 1) % 3], r.cot[(k + 2) % 3], 0.5 * r.cot[k] * squared(a.x - b.x, a.y - b.y), 0.5 / r.area});
+    }
+  }
+
+  // Returns the part of the star's energy that was gained.
+  double move(mesh::Index v) {
+    gather(v);
+    FlatPoint& p = mesh_.points[v];
+    const Expansion e = expand(star_, p);
+    const bool on_side = mesh_.fixed_x[v] || mesh_.fixed_y[v];
+    const FlatPoint s = on_side ? along_side(e, mesh_.fixed_x[v], mesh_.fixed_y[v]) : descent(e);
+    double t = step_to_fold(star_, p, s);
+    if (!(t > 0)) return 0;
+    for (int i = 0; i < most_halvings; ++i, t *= 0.5) {
+      const FlatPoint q{p.x + t * s.x, p.y + t * s.y};
+      const double energy = energy_at(star_, q);
+      if (!(energy < e.energy)) continue;
+      p = q;
+      return (e.energy - energy) / e.energy;
+    }
+    return 0;
+  }
+};
+
+// The energy of the whole mesh as a function of its scales along x and y: D = sx^2 Dx + sy^2 Dy and x = sx sy x0, so E
+// is a sum of moments of Dx and of Dy with the powers of x0 that h has.
+class ScaledEnergy {
+public:
+  explicit ScaledEnergy(const PlaneMesh& mesh) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const PlaneReference& r = mesh.references[t];
+      std::array<FlatPoint, 3> p;
+      for (std::size_t k = 0; k < 3; ++k) p[k] = mesh.points[mesh.triangles[t][k]];
+      double along_x = 0, along_y = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const FlatPoint &a = p[(k + 1) % 3], &b = p[(k + 2) % 3];
+        along_x += 0.5 * r.cot[k] * (a.x - b.x) * (a.x - b.x);
+        along_y += 0.5 * r.cot[k] * (a.y - b.y) * (a.y - b.y);
+      }
+      const double x = doubled_area(p[0], p[1], p[2]) / (2 * r.area), x2 = x * x;
+      double power = x * x2;
+      for (std::size_t i = 0; i < powers; ++i, power /= x2) {
+        moments_x_[i] += along_x * power;
+        moments_y_[i] += along_y * power;
+      }
+    }
+  }
+
+  [[nodiscard]] double operator()(double sx, double sy) const {
+    const double s = sx * sy;
+    double power = s * s * s, sum = 0;
+    for (std::size_t i = 0; i < powers; ++i, power /= s * s)
+      sum += factors[i] * power * (sx * sx * moments_x_[i] + sy * sy * moments_y_[i]);
+    return sum;
+  }
+
+private:
+  static constexpr std::size_t powers = 5; // 3, 1, -1, -3, -5
+  static constexpr std::array<double, powers> factors{1.0 / 32, 4.0 / 32, 6.0 / 32, 4.0 / 32, 1.0 / 32};
+  std::array<double, powers> moments_x_{}, moments_y_{};
+};
+
+} // namespace
+
+PlaneReference plane_reference(const Vec3d& p0, const Vec3d& p1, const Vec3d& p2) {
+  constexpr double regularisation = 1e-5;
+  // With d added to the squared lengths of a triangle of area A, Heron's formula gives
+  // 16 A'^2 = 16 A^2 + 2 d (l0 + l1 + l2) + 3 d^2, free of cancellation.
+  const double l0 = squared_norm(p2 - p1), l1 = squared_norm(p0 - p2), l2 = squared_norm(p1 - p0);
+  const double sum = l0 + l1 + l2, d = regularisation * sum / 3;
+  const double four_areas = std::sqrt(4 * squared_norm(cross(p1 - p0, p2 - p0)) + 2 * d * sum + 3 * d * d);
+  if (!(four_areas > 0)) return {{std::numbers::inv_sqrt3, std::numbers::inv_sqrt3, std::numbers::inv_sqrt3}, 0};
+  const auto cot = [&](double opposite) { return (sum + d - 2 * opposite) / four_areas; };
+  return {{cot(l0), cot(l1), cot(l2)}, four_areas / 4};
+}
+
+double energy_of(const PlaneMesh& mesh) { return ScaledEnergy(mesh)(1, 1); }
+
+void relax(PlaneMesh& mesh, int sweeps) {
+  Relaxation relaxation(mesh);
+  for (int i = 0; i < sweeps; ++i)
+    if (!relaxation.sweep()) return;
+}
+
+void stretch_to_best(PlaneMesh& mesh) {
+  const ScaledEnergy energy(mesh);
+  double sx = 1, sy = 1, best = energy(sx, sy);
+  // Pattern search over the logarithms, on sums of six numbers.
+  for (double step = 1; step > 1e-4;) {
+    bool better = false;
+    for (const auto& [dx, dy] : {std::pair{1, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+      const double x = sx * std::exp(step * dx), y = sy * std::exp(step * dy), e = energy(x, y);
+      if (!(e < best)) continue;
+      sx = x;
+      sy = y;
+      best = e;
+      better = true;
+    }
+    if (!better) step *= 0.5;
+  }
+  for (FlatPoint& p : mesh.points) {
+    p.x *= sx;
+    p.y *= sy;
+  }
+}
+
+} // namespace orbis::texture
