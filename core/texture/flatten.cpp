@@ -12,8 +12,9 @@
 namespace orbis::texture {
 namespace {
 
-constexpr int most_cycles = 3;
-constexpr int first_sweeps = 3, sweeps_a_cycle = 4, last_sweeps = 4;
+constexpr int most_cycles = 6;
+constexpr double worthwhile = 0.01; // of the energy, to go on for
+constexpr int first_sweeps = 3, sweeps_a_cycle = 6, last_sweeps = 4;
 constexpr double weight_of_hole = 1e-3; // of a triangle that only closes one
 constexpr double least_area = 1e-6;     // of a triangle, in units of the mean
 constexpr std::uint32_t most_cells = 32;
@@ -75,20 +76,24 @@ void settle_in_rectangle(PlaneMesh& mesh, int sweeps) {
   stretch_to_best(mesh);
 }
 
-// One step for the low frequencies and one for the high ones. Returns whether that lowered the energy; else the mesh is
-// as before.
-bool cycle(PlaneMesh& mesh) {
+// One step for the low frequencies and one for the high ones: `part` of the way to where the warp says. Returns the
+// part of the energy that was gained; 0 where that folds triangles beyond mending or does not pay: the mesh is then as
+// before.
+double cycle(PlaneMesh& mesh, double part) {
   const std::vector<FlatPoint> before = mesh.points;
   const double energy = energy_of(mesh);
   to_unit_square(mesh);
   const CoarseWarp coarse(mesh, cells_for(mesh.triangles.size()));
-  for (FlatPoint& p : mesh.points) p = coarse(p);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const FlatPoint to = coarse(mesh.points[v]), &from = before[v];
+    mesh.points[v] = {from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)};
+  }
   if (untangle(mesh)) {
     settle_in_rectangle(mesh, sweeps_a_cycle);
-    if (energy_of(mesh) < energy) return true;
+    if (const double now = energy_of(mesh); now < energy) return (energy - now) / energy;
   }
   mesh.points = before;
-  return false;
+  return 0;
 }
 
 // From the square of the central projection to the rectangle of the surface's own size.
@@ -100,8 +105,12 @@ void flatten_chart(PlaneMesh& mesh) {
   if (!untangle(mesh))
     throw Error(ErrorCode::not_certified, "a triangle at a border of the cube's faces has no room in its chart");
   settle_in_rectangle(mesh, first_sweeps);
-  if (cells_for(mesh.triangles.size()) > 1)
-    for (int i = 0; i < most_cycles && cycle(mesh);) ++i;
+  double part = 1;
+  for (int i = 0; i < most_cycles && cells_for(mesh.triangles.size()) > 1; ++i) {
+    const double gain = cycle(mesh, part);
+    if (gain > 0 && gain < worthwhile && part == 1) break;
+    part = gain > 0 ? std::min(1.0, 2 * part) : part / 3;
+  }
   settle_in_rectangle(mesh, last_sweeps);
 }
 

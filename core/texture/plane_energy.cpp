@@ -4,9 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
-#include "core/sphere/star_table.h"
+#include "core/texture/stars.h"
 
 namespace orbis::texture {
 namespace {
@@ -108,9 +107,7 @@ double step_to_fold(std::span<const Term> star, const FlatPoint& p, const FlatPo
 class Relaxation {
 public:
   explicit Relaxation(PlaneMesh& mesh) : mesh_(mesh), awake_(mesh.points.size(), 1) {
-    std::vector<std::uint32_t> all(mesh.triangles.size());
-    std::iota(all.begin(), all.end(), 0U);
-    stars_.build(mesh.triangles, all, mesh.points.size());
+    stars_ = Stars(mesh.triangles, mesh.points.size());
   }
 
   // Returns whether any point moved by what is worthwhile.
@@ -122,21 +119,21 @@ public:
       if (!(move(v) > worthwhile)) continue;
       any = true;
       awake_[v] = 1;
-      for (const sphere::StarCorner& c : stars_[v]) awake_[c.next] = awake_[c.previous] = 1;
+      for (const StarCorner& c : stars_[v]) awake_[c.next] = awake_[c.previous] = 1;
     }
     return any;
   }
 
 private:
   PlaneMesh& mesh_;
-  sphere::StarTable stars_;
+  Stars stars_;
   std::vector<std::uint8_t> awake_;
   std::vector<Term> star_;
 
   void gather(mesh::Index v) {
     star_.clear();
-    for (const sphere::StarCorner& c : stars_[v]) {
-      const PlaneReference& r = mesh_.references[c.slot()];
+    for (const StarCorner& c : stars_[v]) {
+      const PlaneReference& r = mesh_.references[c.corner / 3];
       const std::size_t k = c.corner % 3;
       const FlatPoint &a = mesh_.points[c.next], &b = mesh_.points[c.previous];
       star_.push_back(

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
-#include "core/sphere/star_table.h"
+#include "core/texture/stars.h"
 
 namespace orbis::texture {
 namespace {
@@ -47,9 +46,7 @@ public:
   Settled run() {
     std::vector<std::uint32_t> folded = folded_triangles();
     if (folded.empty()) return {std::move(points_), 0};
-    std::vector<std::uint32_t> all(triangles_.size());
-    std::iota(all.begin(), all.end(), 0U);
-    stars_.build(triangles_, all, points_.size());
+    stars_ = Stars(triangles_, points_.size());
     for (int round = 0; round < rounds && !folded.empty(); ++round) {
       bool moved = false;
       for (const std::uint32_t t : folded) moved = mend(t) || moved;
@@ -63,7 +60,7 @@ private:
   std::span<const mesh::Triangle> triangles_;
   std::vector<UvPoint> offsets_, points_;
   std::vector<Freedom> freedom_;
-  sphere::StarTable stars_;
+  Stars stars_;
 
   [[nodiscard]] std::vector<std::uint32_t> folded_triangles() const {
     std::vector<std::uint32_t> out;
@@ -75,9 +72,8 @@ private:
   }
 
   [[nodiscard]] auto folds(mesh::Index v, const UvPoint& at) const {
-    return std::ranges::count_if(stars_[v], [&](const sphere::StarCorner& c) {
-      return orientation(at, points_[c.next], points_[c.previous]) != 1;
-    });
+    return std::ranges::count_if(
+        stars_[v], [&](const StarCorner& c) { return orientation(at, points_[c.next], points_[c.previous]) != 1; });
   }
 
   bool mend(std::uint32_t t) {

@@ -5,15 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
-#include "core/sphere/star_table.h"
+#include "core/texture/stars.h"
 
 namespace orbis::texture {
 namespace {
 
-constexpr int rounds = 30;
-constexpr int rings = 3; // around the folded triangles
+constexpr int rounds = 10;
+constexpr double thin = 1e-3; // a triangle with less of its area counts as folded
+constexpr int rings = 3;      // around the folded triangles
 constexpr double smallest_e = 0.01;
 
 double chi(double x, double e) { return 0.5 * (x + std::sqrt(x * x + e * e)); }
@@ -25,9 +25,7 @@ public:
   bool run() {
     std::vector<std::uint32_t> folds = folded();
     if (folds.empty()) return true;
-    std::vector<std::uint32_t> all(mesh_.triangles.size());
-    std::iota(all.begin(), all.end(), 0U);
-    stars_.build(mesh_.triangles, all, mesh_.points.size());
+    stars_ = Stars(mesh_.triangles, mesh_.points.size());
     for (int round = 0; round < rounds && !folds.empty(); ++round) {
       const std::vector<mesh::Index> movable = around(folds);
       double worst = 0;
@@ -36,12 +34,12 @@ public:
       for (const mesh::Index v : movable) improve(v, e);
       folds = folded();
     }
-    return folds.empty();
+    return std::all_of(folds.begin(), folds.end(), [this](std::uint32_t t) { return ratio(t) > 0; });
   }
 
 private:
   PlaneMesh& mesh_;
-  sphere::StarTable stars_;
+  Stars stars_;
 
   [[nodiscard]] double ratio(std::uint32_t t) const {
     const auto& [a, b, c] = mesh_.triangles[t];
@@ -51,7 +49,7 @@ private:
   [[nodiscard]] std::vector<std::uint32_t> folded() const {
     std::vector<std::uint32_t> out;
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t)
-      if (!(ratio(t) > 0)) out.push_back(t);
+      if (!(ratio(t) > thin)) out.push_back(t);
     return out;
   }
 
@@ -67,15 +65,15 @@ private:
     for (std::size_t ring = 0, first = 0; ring < rings; ++ring) {
       const std::size_t end = out.size();
       for (; first < end; ++first)
-        for (const sphere::StarCorner& c : stars_[out[first]]) add(c.next);
+        for (const StarCorner& c : stars_[out[first]]) add(c.next);
     }
     return out;
   }
 
   [[nodiscard]] double energy(mesh::Index v, const FlatPoint& p, double e) const {
     double sum = 0;
-    for (const sphere::StarCorner& c : stars_[v]) {
-      const PlaneReference& r = mesh_.references[c.slot()];
+    for (const StarCorner& c : stars_[v]) {
+      const PlaneReference& r = mesh_.references[c.corner / 3];
       const std::size_t k = c.corner % 3;
       const FlatPoint &a = mesh_.points[c.next], &b = mesh_.points[c.previous];
       const auto squared = [](const FlatPoint& i, const FlatPoint& j) {
@@ -95,7 +93,7 @@ private:
     if (mesh_.fixed_x[v] && mesh_.fixed_y[v]) return;
     FlatPoint& p = mesh_.points[v];
     double size = 0;
-    for (const sphere::StarCorner& c : stars_[v])
+    for (const StarCorner& c : stars_[v])
       size = std::max(size, std::hypot(mesh_.points[c.next].x - p.x, mesh_.points[c.next].y - p.y));
     const double d = 1e-3 * size, here = energy(v, p, e);
     if (!(d > 0)) return;

@@ -101,6 +101,16 @@ TEST_CASE("vertices on a border and just beside it give a closed surface, or a c
   CHECK(closed > 140);
 }
 
+// As the pipeline does: one turn after the other, up to seven.
+bool a_turn_cures(const SphereMesh& mesh, std::mt19937& random) {
+  for (int turn = 0; turn < 7; ++turn) try {
+      return is_sphere(atlas_of(turned(mesh, random), 512));
+    } catch (const Error& e) {
+      CHECK(e.code() == ErrorCode::not_certified);
+    }
+  return false;
+}
+
 TEST_CASE("vertices on a border and just beside it give an atlas, or a clean refusal that a turn cures") {
   std::mt19937 random(26);
   int made = 0;
@@ -113,7 +123,7 @@ TEST_CASE("vertices on a border and just beside it give an atlas, or a clean ref
       ++made;
     } catch (const Error& e) {
       CHECK(e.code() == ErrorCode::not_certified);
-      CHECK(is_sphere(atlas_of(turned(mesh, random), 512)));
+      CHECK(a_turn_cures(mesh, random));
     }
   }
   CHECK(made > 40);
