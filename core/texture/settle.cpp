@@ -99,10 +99,14 @@ private:
 
 } // namespace
 
-int orientation(const UvPoint& a, const UvPoint& b, const UvPoint& c) {
+std::int64_t doubled_area(const UvPoint& a, const UvPoint& b, const UvPoint& c) {
   // Differences have 25 bits, products 50.
-  const std::int64_t det = (std::int64_t{b[1]} - a[1]) * (std::int64_t{c[0]} - a[0]) -
-                           (std::int64_t{b[0]} - a[0]) * (std::int64_t{c[1]} - a[1]);
+  return (std::int64_t{b[1]} - a[1]) * (std::int64_t{c[0]} - a[0]) -
+         (std::int64_t{b[0]} - a[0]) * (std::int64_t{c[1]} - a[1]);
+}
+
+int orientation(const UvPoint& a, const UvPoint& b, const UvPoint& c) {
+  const std::int64_t det = doubled_area(a, b, c);
   return (det > 0) - (det < 0);
 }
 

@@ -15,6 +15,9 @@ using UvPoint = std::array<std::int32_t, 2>; // uv * 2^24
 // where it is folded over, 0 where it has no area. Exact.
 [[nodiscard]] int orientation(const UvPoint& a, const UvPoint& b, const UvPoint& c);
 
+// Twice the area of the triangle in grid units, with the sign of its orientation. Exact.
+[[nodiscard]] std::int64_t doubled_area(const UvPoint& a, const UvPoint& b, const UvPoint& c);
+
 // The float32 of a grid point, exactly.
 [[nodiscard]] Vec2f to_uv(const UvPoint& p);
 
