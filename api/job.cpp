@@ -13,8 +13,8 @@ std::optional<JobState> job_state(std::string_view name) {
 
 double overall_percent(Stage stage, std::uint64_t done, std::uint64_t total) {
   // Percent of the wall time of a scan of 100k triangles with default options: decode, topology, simplify, refine,
-  // optimise, atlas, bake, levels (none by default), encode, certify.
-  constexpr std::array<double, stage_count> shares{3, 3, 5, 39, 20, 5, 10, 0, 10, 5};
+  // optimise, atlas, levels (none by default), bake, encode, certify.
+  constexpr std::array<double, stage_count> shares{3, 3, 5, 39, 20, 5, 0, 10, 10, 5};
   static_assert(std::accumulate(shares.begin(), shares.end(), 0.0) == 100.0);
   const auto index = static_cast<std::ptrdiff_t>(stage);
   const double before = std::accumulate(shares.begin(), shares.begin() + index, 0.0);

@@ -81,6 +81,7 @@ struct Job {
   Options options;
   JobInput input;
   std::optional<JobResult> result;
+  std::vector<std::string> maps; // file names of the maps that were baked: "normal.png"
   std::optional<Problem> problem;
   std::uint64_t version = 0; // grows with every change; orders events
 };

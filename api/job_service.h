@@ -57,6 +57,8 @@ public:
   [[nodiscard]] virtual std::optional<Job> cancel(std::string_view id) = 0;
   // A file of a job that has succeeded and not expired.
   [[nodiscard]] virtual std::optional<StoredFile> file(std::string_view id, JobFile kind) = 0;
+  // One of the job's maps, by its file name; nothing for any other name.
+  [[nodiscard]] virtual std::optional<StoredFile> map(std::string_view id, std::string_view name) = 0;
 
   // These answer from memory, whatever the load.
   [[nodiscard]] virtual bool draining() const = 0;

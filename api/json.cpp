@@ -31,6 +31,8 @@ Json links(const Job& job, const std::string& self) {
   Json json{{"self", self}, {"events", self + "/events"}};
   if (job.state == JobState::succeeded) {
     for (const char* name : {"result", "report", "atlas.png", "preview.png"}) json[name] = self + "/" + name;
+    json["maps"] = Json::object();
+    for (const std::string& map : job.maps) json["maps"][map] = self + "/maps/" + map;
   }
   return json;
 }

@@ -137,6 +137,18 @@ Json level_json(const Report::Level& level) {
           {"lost_components", level.lost_components}};
 }
 
+Json vector_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
+Json map_json(const Report::BakedMap& m) {
+  Json json{{"name", m.name}, {"page", m.page}, {"width", m.width}, {"height", m.height}, {"bits", m.bits},
+            {"bytes", m.bytes}};
+  if (m.range) {
+    json["offset"] = vector_json(m.range->offset);
+    json["scale"] = vector_json(m.range->scale);
+  }
+  return json;
+}
+
 Timing timing_of(const Report& report) {
   Timing timing;
   double wall = 0, cpu = 0;
@@ -160,6 +172,8 @@ Json to_json(const Report& report) {
   }
   Json levels = Json::array();
   for (const Report::Level& level : report.levels) levels.push_back(level_json(level));
+  Json maps = Json::array();
+  for (const Report::BakedMap& map : report.maps) maps.push_back(map_json(map));
   return {{"version", ORBIS_VERSION},
           {"format", report.format},
           {"options", to_json(report.options)},
@@ -179,6 +193,7 @@ Json to_json(const Report& report) {
           {"distortion", distortion_json(report.distortion)},
           {"atlas", atlas_json(report.atlas)},
           {"levels", std::move(levels)},
+          {"maps", std::move(maps)},
           {"output", {{"triangles", report.output_triangles}, {"vertices", report.output_vertices}}},
           {"certificate", certificate_json(report.certificate)},
           {"cut_certificate", certificate_json(report.cut_certificate)},

@@ -92,19 +92,19 @@ constexpr FileTraits file_traits[]{
 
 const FileTraits& traits_of(JobFile kind) { return *std::ranges::find(file_traits, kind, &FileTraits::kind); }
 
+// The media type of a map, by its name's ending.
+std::string_view type_of_map(std::string_view name) {
+  if (name.ends_with(".jpeg")) return "image/jpeg";
+  return name.ends_with(".webp") ? "image/webp" : "image/png";
+}
+
 // A stored file with its entity tag and at most one range.
-Response file_response(const Request& request, const Job& job, const StoredFile& file, JobFile kind) {
-  const FileTraits& traits = traits_of(kind);
+Response file_response(const Request& request, const StoredFile& file, std::string_view type) {
   const std::string etag = "\"" + file.sha256 + "\"";
   Response response;
   response.set("ETag", etag);
   response.set("Accept-Ranges", "bytes");
   response.set("Cache-Control", "private, immutable");
-  if (kind == JobFile::result) {
-    response.set("Content-Disposition",
-                 "attachment; filename=\"orbis-" + job.id + std::string(traits.download_suffix) + "\"");
-    response.set("Server-Timing", server_timing(job.timing));
-  }
   if (matches_etag(request.header("If-None-Match"), etag)) {
     response.status = 304;
     return response;
@@ -126,7 +126,7 @@ Response file_response(const Request& request, const Job& job, const StoredFile&
     response.set("Content-Range", "bytes " + std::to_string(body.offset) + "-" +
                                       std::to_string(body.offset + body.length - 1) + "/" + std::to_string(file.bytes));
   }
-  response.set("Content-Type", std::string(traits.type));
+  response.set("Content-Type", std::string(type));
   response.body = std::move(body);
   return response;
 }
@@ -227,6 +227,10 @@ Response Router::job_route(const Request& request, std::string_view id, std::str
     return request.method == "DELETE" ? delete_job(id) : method_not_allowed("GET, DELETE");
   }
   rest.remove_prefix(1);
+  constexpr std::string_view maps = "maps/";
+  if (rest.starts_with(maps)) {
+    return is_read(request) ? get_map(request, id, rest.substr(maps.size())) : method_not_allowed("GET");
+  }
   const auto* file = std::ranges::find(file_traits, rest, &FileTraits::route);
   if (rest != "events" && file == std::end(file_traits)) refuse_unknown_path();
   if (!is_read(request)) return method_not_allowed("GET");
@@ -334,7 +338,15 @@ Response Router::get_file(const Request& request, std::string_view id, JobFile k
   return result_of(request, require(id), kind);
 }
 
-Response Router::result_of(const Request& request, const Job& job, JobFile kind) {
+Response Router::get_map(const Request& request, std::string_view id, std::string_view name) {
+  const Job job = require(id);
+  if (auto refusal = refuse_unfinished(job)) return *std::move(refusal);
+  const auto file = jobs_.map(job.id, name);
+  if (!file) throw Refused(Refusal::not_found, "the job has no map of this name; its links list those that it has");
+  return file_response(request, *file, type_of_map(name));
+}
+
+std::optional<Response> Router::refuse_unfinished(const Job& job) const {
   const auto refuse = [&](Problem problem) {
     problem.instance = "/v1/jobs/" + job.id;
     return problem_response(problem);
@@ -353,9 +365,21 @@ Response Router::result_of(const Request& request, const Job& job, JobFile kind)
   case JobState::succeeded:
     break;
   }
+  return std::nullopt;
+}
+
+Response Router::result_of(const Request& request, const Job& job, JobFile kind) {
+  if (auto refusal = refuse_unfinished(job)) return *std::move(refusal);
   const auto file = jobs_.file(job.id, kind);
-  if (!file) return refuse(make_problem(Refusal::expired, "the job expired just now; post the model again"));
-  return file_response(request, job, *file, kind);
+  if (!file) throw Refused(Refusal::expired, "the job expired just now; post the model again");
+  const FileTraits& traits = traits_of(kind);
+  Response response = file_response(request, *file, traits.type);
+  if (kind == JobFile::result && response.status < 400) {
+    response.set("Content-Disposition",
+                 "attachment; filename=\"orbis-" + job.id + std::string(traits.download_suffix) + "\"");
+    response.set("Server-Timing", server_timing(job.timing));
+  }
+  return response;
 }
 
 Response Router::get_events(const Request& request, std::string_view id) {

@@ -40,12 +40,15 @@ private:
   [[nodiscard]] Response delete_job(std::string_view id);
   [[nodiscard]] Response list_jobs(const Request& request);
   [[nodiscard]] Response get_file(const Request& request, std::string_view id, JobFile kind);
+  [[nodiscard]] Response get_map(const Request& request, std::string_view id, std::string_view name);
   [[nodiscard]] Response get_events(const Request& request, std::string_view id);
   [[nodiscard]] Response readiness() const;
   [[nodiscard]] Response problem_response(const Problem& problem) const;
 
   [[nodiscard]] Job require(std::string_view id) const;
   [[nodiscard]] Response result_of(const Request& request, const Job& job, JobFile kind);
+  // Why there are no files of the job; nothing where it has succeeded.
+  [[nodiscard]] std::optional<Response> refuse_unfinished(const Job& job) const;
   // Waits until `done` holds for the job or the time is over.
   template <class Done> [[nodiscard]] Job wait_until(Job job, std::chrono::milliseconds time, Done done);
 

@@ -10,7 +10,7 @@
 namespace orbis {
 namespace {
 
-constexpr std::array<OptionInfo, 14> table{{
+constexpr std::array<OptionInfo, 16> table{{
     {"topology", "repair | strict", "repair",
      "repair: whatever has triangles is parametrized; strict: anything but one closed component of genus 0 is refused"},
     {"weld_tolerance", "a number, 0 or more", "0",
@@ -29,8 +29,15 @@ constexpr std::array<OptionInfo, 14> table{{
     {"texture_size", "64 to 8192", "2048", "width of the atlas' largest image in texels"},
     {"atlas", "per-material | single", "per-material",
      "an image for each material (those that meet on one component share theirs), or one for the file"},
-    {"texture_format", "png | jpeg", "png", "how the atlas is stored in the result"},
-    {"jpeg_quality", "1 to 100", "90", "with texture_format=jpeg"},
+    {"texture_format", "png | jpeg | webp", "png", "how the atlas is stored in the result"},
+    {"jpeg_quality", "1 to 100", "90", "with texture_format=jpeg or webp"},
+    {"maps",
+     "auto | all | names from "
+     "base_color,metallic_roughness,occlusion,emissive,normal,object_normal,ambient_occlusion,position",
+     "auto",
+     "what is baked into the atlas: auto is the base colour and every texture that the materials have, all that and "
+     "what comes from the geometry"},
+    {"normal_bits", "8 | 16", "8", "bits a channel of the normal maps"},
     {"compression", "none | draco", "none", "how the geometry is stored in the result"},
     {"lods", "a list such as 0.25,0.05,0.01: parts of the triangles, their numbers, or deviation:0.1", "",
      "levels of detail on the same atlas, from fine to coarse; deviation: in per cent of the model's diagonal"},
@@ -72,7 +79,7 @@ constexpr std::array<std::string_view, 4> objectives{"isometric", "conformal", "
 constexpr std::array<std::string_view, 3> qualities{"draft", "standard", "high"};
 constexpr std::array<std::string_view, 4> sources{"auto", "pattern", "cubemap", "base_color"};
 constexpr std::array<std::string_view, 2> pages{"per-material", "single"};
-constexpr std::array<std::string_view, 2> formats{"png", "jpeg"};
+constexpr std::array<std::string_view, 3> formats{"png", "jpeg", "webp"};
 constexpr std::array<std::string_view, 2> topologies{"repair", "strict"};
 constexpr std::array<std::string_view, 2> compressions{"none", "draco"};
 
@@ -131,6 +138,38 @@ std::string text_of(const std::vector<LodTarget>& targets) {
   return text;
 }
 
+// Names with commas between them. "auto" may be one of them; "all" stands for it and every map that any model has.
+MapSelection maps_of(std::string_view text) {
+  MapSelection maps;
+  maps.automatic = false;
+  std::string_view rest = text;
+  while (true) {
+    const std::string_view name = rest.substr(0, rest.find(','));
+    if (name == "auto") {
+      maps.automatic = true;
+    } else if (name == "all") {
+      maps.automatic = true;
+      for (const Map map : {Map::normal, Map::object_normal, Map::ambient_occlusion, Map::position}) {
+        maps.named[static_cast<std::size_t>(map)] = true;
+      }
+    } else {
+      maps.named[static_cast<std::size_t>(choice<Map>("maps", name, map_names))] = true;
+    }
+    if (name.size() == rest.size()) return maps;
+    rest.remove_prefix(name.size() + 1);
+  }
+}
+
+std::string text_of(const MapSelection& maps) {
+  std::string text = maps.automatic ? "auto" : "";
+  for (std::size_t i = 0; i < map_names.size(); ++i) {
+    if (!maps.named[i]) continue;
+    if (!text.empty()) text += ',';
+    text += map_names[i];
+  }
+  return text;
+}
+
 } // namespace
 
 std::span<const OptionInfo> option_table() { return table; }
@@ -160,6 +199,11 @@ void set_option(Options& options, std::string_view name, std::string_view value)
     options.texture_format = choice<TextureFormat>(name, value, formats);
   } else if (name == "jpeg_quality") {
     options.jpeg_quality = number<std::uint32_t>(name, value, 1, 100);
+  } else if (name == "maps") {
+    options.maps = maps_of(value);
+  } else if (name == "normal_bits") {
+    if (value != "8" && value != "16") refuse(name, value);
+    options.normal_bits = value == "8" ? 8 : 16;
   } else if (name == "compression") {
     options.compression = choice<Compression>(name, value, compressions);
   } else if (name == "lods") {
@@ -183,6 +227,8 @@ std::string get_option(const Options& options, std::string_view name) {
   if (name == "atlas") return text_of(options.atlas, pages);
   if (name == "texture_format") return text_of(options.texture_format, formats);
   if (name == "jpeg_quality") return std::to_string(options.jpeg_quality);
+  if (name == "maps") return text_of(options.maps);
+  if (name == "normal_bits") return std::to_string(options.normal_bits);
   if (name == "compression") return text_of(options.compression, compressions);
   if (name == "lods") return text_of(options.lods);
   if (name == "threads") return std::to_string(options.threads);

@@ -2,6 +2,8 @@
 // --texture-size.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -13,8 +15,8 @@ namespace orbis {
 enum class Objective { isometric, conformal, stretch, shape_preserving };
 enum class Quality { draft, standard, high };
 enum class TextureSource { automatic, pattern, cubemap, base_color };
-enum class TextureFormat { png, jpeg };
 enum class AtlasPages { per_material, single };
+enum class TextureFormat { png, jpeg, webp };
 enum class Compression { none, draco };
 enum class TopologyPolicy { repair, strict };
 
@@ -26,6 +28,30 @@ struct LodTarget {
   friend bool operator==(const LodTarget&, const LodTarget&) = default;
 };
 inline constexpr std::size_t most_lods = 8;
+
+// What can be baked into the atlas. The first five take the place of the materials' textures.
+enum class Map : std::uint8_t {
+  base_color,
+  metallic_roughness,
+  occlusion,
+  emissive,
+  normal,        // tangent space
+  object_normal, // in the space of POSITION
+  ambient_occlusion,
+  position // a geometry image
+};
+inline constexpr std::array<std::string_view, 8> map_names{
+    "base_color", "metallic_roughness", "occlusion",         "emissive",
+    "normal",     "object_normal",      "ambient_occlusion", "position"};
+constexpr std::string_view name_of(Map map) { return map_names[static_cast<std::size_t>(map)]; }
+
+struct MapSelection {
+  bool automatic = true; // the base colour, and every texture that the input's materials have
+  std::array<bool, map_names.size()> named{};
+
+  [[nodiscard]] bool names(Map map) const { return named[static_cast<std::size_t>(map)]; }
+  friend bool operator==(const MapSelection&, const MapSelection&) = default;
+};
 
 struct Options {
   // repair: whatever has triangles is parametrized, cut and capped where it must be; strict: anything but one closed
@@ -46,7 +72,9 @@ struct Options {
   // samplers go on meaning what they meant and what is not drawn need not be loaded. single: one image for the file.
   AtlasPages atlas = AtlasPages::per_material;
   TextureFormat texture_format = TextureFormat::png;
-  std::uint32_t jpeg_quality = 90; // 1 to 100
+  std::uint32_t jpeg_quality = 90; // 1 to 100; WebP's too
+  MapSelection maps;
+  std::uint32_t normal_bits = 8; // 8 or 16 a channel, of the normal maps
   Compression compression = Compression::none;
   std::vector<LodTarget> lods; // levels of detail beside the full surface, from fine to coarse
   std::uint32_t threads = 0; // 0: as many as the machine has; the result does not depend on it

@@ -3,7 +3,7 @@
 #include <sys/resource.h>
 
 #include "core/asset/asset.h"
-#include "core/asset/image_codec.h"
+#include "core/steps/bake_maps.h"
 #include "core/steps/delivery.h"
 #include "core/steps/dump.h"
 #include "core/steps/embed.h"
@@ -54,23 +54,24 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   const CutSphere sphere = snap_and_cut(asset, surface, points, request.options, clock, report);
   const std::vector<Vec3f> delivered = deliverable(sphere.points);
   report.distortion = measure(surface, delivered, report);
-  const Delivery delivery = make_delivery(asset, surface, sphere.cut);
+  Delivery delivery = make_delivery(asset, surface, sphere.cut);
   dump_mesh(dump, "2-sphere.obj", delivered, surface.mesh.triangles);
   dump_charts(dump, "3-charts.obj", sphere.cut);
 
-  clock.report(Stage::bake, 0, 1);
-  const std::vector<texture::Image> pages = paint(request, limits, asset, surface, sphere.cut, delivery, clock, report);
-  result.preview_png = preview(surface, sphere.cut, pages);
-
   clock.report(Stage::levels, 0, 1);
-  const std::vector<DetailLevel> levels = make_levels(asset, surface, sphere.cut, clock, report);
+  std::vector<DetailLevel> levels = make_levels(asset, surface, sphere.cut, clock, report);
+
+  clock.report(Stage::bake, 0, 1);
+  BakedMaps maps = bake_maps(request, limits, asset, surface, sphere.cut, delivery, levels, clock, report);
 
   clock.report(Stage::encode, 0, 1);
-  result.atlas_png = asset::encode_png(pages.front());
+  result.preview_png = preview(surface, sphere.cut, maps.pages);
+  result.atlas_png = atlas_picture(maps, request.options);
+  result.maps = std::move(maps.files);
   dump_bytes(dump, "4-atlas.png", result.atlas_png);
   dump_bytes(dump, "5-preview.png", result.preview_png);
-  result.glb = asset::write_asset(asset, delivery.primitives, encode_atlas(pages, result.atlas_png, request.options),
-                                  extras_of(report), request.options.compression, in_asset(levels, report));
+  result.glb = asset::write_asset(asset, delivery.primitives, maps.images, extras_of(report),
+                                  request.options.compression, in_asset(levels, report));
 
   clock.report(Stage::certify, 0, 1);
   certify_file(result.glb, asset, surface, sphere.points, delivery, report);

@@ -23,9 +23,16 @@ struct Request {
   Options options;
 };
 
+// A map that was baked: "normal.png" and its contents.
+struct MapFile {
+  std::string name;
+  std::vector<std::byte> bytes;
+};
+
 struct Result {
   std::vector<std::byte> glb;
   std::vector<std::byte> atlas_png, preview_png; // pictures to look at: the first page of the atlas; sphere and model
+  std::vector<MapFile> maps;                     // as report.maps lists them
   Report report;
 };
 

@@ -11,6 +11,7 @@
 #include "core/progress.h"
 #include "core/sphere/certificate.h"
 #include "core/sphere/distortion.h"
+#include "core/vec3.h"
 
 namespace orbis {
 
@@ -93,6 +94,18 @@ struct Report {
     std::uint64_t lost_components = 0;
   };
   std::vector<Level> levels;
+  // The images that were baked, all of the texture coordinates that the result calls the atlas'.
+  struct BakedMap {
+    std::string name; // of the file: "normal.png"; with several pages "normal-2.png"
+    std::uint32_t page = 0, width = 0, height = 0, bits = 8;
+    std::uint64_t bytes = 0;
+    // Position maps: a texel's number n in [0, 1] is the coordinate offset + n * scale.
+    struct Range {
+      Vec3d offset, scale;
+    };
+    std::optional<Range> range;
+  };
+  std::vector<BakedMap> maps;
   std::uint64_t output_triangles = 0, output_vertices = 0;
   sphere::Certificate certificate;     // of the surface at the input's connectivity, as delivered
   sphere::Certificate cut_certificate; // of the delivered triangles, cut at the atlas' borders

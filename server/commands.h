@@ -17,7 +17,7 @@ namespace orbis::server {
 
 struct RunArguments {
   std::filesystem::path input, output;
-  std::optional<std::filesystem::path> report, dump_stages; // a file, a directory
+  std::optional<std::filesystem::path> report, dump_stages, save_maps; // a file, two directories
   std::vector<std::filesystem::path> attachments;           // files, or directories of files
   std::vector<std::pair<std::string, std::string>> options; // by name, as set_option takes them
 };

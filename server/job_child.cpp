@@ -12,6 +12,7 @@
 
 #include "api/json.h"
 #include "core/pipeline.h"
+#include "server/job_files.h"
 #include "server/job_messages.h"
 #include "server/sandbox.h"
 
@@ -91,6 +92,7 @@ void run_task() {
   send_file("result.glb", result.glb);
   send_file("atlas.png", result.atlas_png);
   send_file("preview.png", result.preview_png);
+  for (const MapFile& map : result.maps) send_file(output_of_map(map.name), map.bytes);
   send_file("report.json", std::as_bytes(std::span(report)));
   send(done_line());
 }

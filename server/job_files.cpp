@@ -13,6 +13,7 @@ namespace {
 using api::Json;
 
 constexpr std::uint64_t max_report_bytes = 16 << 20;
+constexpr std::string_view map_prefix = "map-";
 // In the order of api::JobFile.
 constexpr std::array<std::string_view, 4> result_names{"result.glb", "report.json", "atlas.png", "preview.png"};
 
@@ -39,13 +40,31 @@ StoredJob new_job(const api::Submission& submission, std::string id) {
 
 std::string_view name_of(api::JobFile kind) { return result_names.at(static_cast<std::size_t>(kind)); }
 
-bool is_result(std::string_view name) { return std::ranges::find(result_names, name) != result_names.end(); }
+std::string output_of_map(std::string_view map) { return std::string(map_prefix) + std::string(map); }
+
+std::optional<std::string> map_of_output(std::string_view name) {
+  if (!name.starts_with(map_prefix)) return std::nullopt;
+  name.remove_prefix(map_prefix.size());
+  const bool safe = name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-.") == std::string_view::npos &&
+                    !name.starts_with('.') && std::ranges::count(name, '.') == 1;
+  return safe ? std::optional<std::string>(name) : std::nullopt;
+}
+
+bool is_result(std::string_view name) {
+  return std::ranges::find(result_names, name) != result_names.end() || map_of_output(name).has_value();
+}
 
 void take_results(StoredJob& stored, const JobOutcome& outcome, const std::filesystem::path& report) {
   for (const std::string_view name : result_names) {
     const auto file = std::ranges::find(outcome.files, name, &OutputFile::name);
     if (file == outcome.files.end()) throw Error(ErrorCode::internal, "a result of the job is missing");
     stored.outputs.emplace_back(name, api::JobResult{file->sha256, file->bytes});
+  }
+  for (const OutputFile& file : outcome.files) {
+    const auto map = map_of_output(file.name);
+    if (!map) continue;
+    stored.outputs.emplace_back(file.name, api::JobResult{file.sha256, file.bytes});
+    stored.job.maps.push_back(*map);
   }
   try {
     const Json json = Json::parse(read_file(report, max_report_bytes));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,11 @@ namespace orbis::server {
 
 // The name under which a result is stored: "result.glb", "report.json", "atlas.png", "preview.png".
 [[nodiscard]] std::string_view name_of(api::JobFile kind);
+// The name under which a map is stored: "map-normal.png" for "normal.png".
+[[nodiscard]] std::string output_of_map(std::string_view map);
+// The other way round: nothing where the name is not a map's. Maps' names are made of lower-case letters, digits, _, -
+// and one dot, so that none leads out of a directory.
+[[nodiscard]] std::optional<std::string> map_of_output(std::string_view name);
 [[nodiscard]] bool is_result(std::string_view name);
 
 // Enters the files of a job that has succeeded, and what its report says about its input and its stages.

@@ -22,7 +22,7 @@ struct InputFile {
 };
 
 struct OutputFile {
-  std::string name; // "result.glb", "report.json", "atlas.png", "preview.png", or a dump of a stage
+  std::string name; // "result.glb", "report.json", "atlas.png", "preview.png", "map-….png", or a dump of a stage
   std::uint64_t bytes = 0;
   std::string sha256;
 };

@@ -2,6 +2,7 @@
 
 #include "api/json.h"
 #include "core/error.h"
+#include "server/job_files.h"
 
 namespace orbis::server {
 namespace {
@@ -98,6 +99,7 @@ StoredJob stored_job(const Json& json) {
     stored.outputs.emplace_back(
         name, api::JobResult{file.at("sha256").get<std::string>(), file.at("bytes").get<std::uint64_t>()});
     if (name == "result.glb") job.result = stored.outputs.back().second;
+    if (auto map = map_of_output(name)) job.maps.push_back(*std::move(map));
   }
   return stored;
 }

@@ -78,6 +78,7 @@ void describe_run(CLI::App& app, CommandLine& line) {
                   "a file that the model names or an image of a cube map; a directory stands for its files")
       ->type_name("FILE");
   run->add_option("--dump-stages", line.run.dump_stages, "write each stage as OBJ and PNG")->type_name("DIR");
+  run->add_option("--save-maps", line.run.save_maps, "write each map that was baked")->type_name("DIR");
   add_options(*run, line.run.options);
 }
 

@@ -6,6 +6,7 @@
 
 #include "api/json.h"
 #include "server/commands.h"
+#include "server/job_files.h"
 #include "server/log.h"
 #include "server/signals.h"
 #include "server/worker_process.h"
@@ -79,6 +80,7 @@ private:
 fs::path place(const RunArguments& arguments, std::string_view name) {
   if (name == "result.glb") return arguments.output;
   if (name == "report.json") return arguments.report.value_or(fs::path());
+  if (const auto map = map_of_output(name)) return arguments.save_maps ? *arguments.save_maps / *map : fs::path();
   const bool picture = name == "atlas.png" || name == "preview.png"; // they are among the dumps, under their numbers
   return arguments.dump_stages && !picture ? *arguments.dump_stages / name : fs::path();
 }
@@ -96,6 +98,7 @@ int run(const RunArguments& arguments, const JobLimits& limits) {
     std::stop_source stop;
     const SignalWatch signals([&](int) { stop.request_stop(); });
     const JobTask task = task_of(arguments, limits);
+    if (arguments.save_maps) fs::create_directories(*arguments.save_maps);
     if (arguments.dump_stages) fs::create_directories(*arguments.dump_stages);
     JobOutcome outcome;
     {

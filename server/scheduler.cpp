@@ -92,6 +92,7 @@ void Scheduler::collect_garbage(api::Time time) {
     stored.job.state = JobState::expired;
     stored.job.result.reset();
     stored.outputs.clear();
+    stored.job.maps.clear();
     changed(stored);
     remove_files(stored.job.id);
     log_job("job_expired", stored.job);
@@ -238,10 +239,17 @@ std::optional<Job> Scheduler::cancel(std::string_view id) {
 }
 
 std::optional<api::StoredFile> Scheduler::file(std::string_view id, api::JobFile kind) {
+  return output(id, name_of(kind));
+}
+
+std::optional<api::StoredFile> Scheduler::map(std::string_view id, std::string_view name) {
+  return output(id, output_of_map(name));
+}
+
+std::optional<api::StoredFile> Scheduler::output(std::string_view id, std::string_view name) {
   const Lock lock(mutex_);
   const auto stored = store_.find(id);
   if (!stored || stored->job.state != JobState::succeeded) return std::nullopt;
-  const std::string_view name = name_of(kind);
   const auto output = std::ranges::find(stored->outputs, name, [](const auto& o) { return std::string_view(o.first); });
   if (output == stored->outputs.end()) return std::nullopt;
   return api::StoredFile{blobs_.output_path(id, name), output->second.bytes, output->second.sha256};
@@ -368,6 +376,7 @@ void Scheduler::succeed(Live& live, const JobOutcome& outcome) {
     take_results(stored, outcome, blobs_.output_path(stored.job.id, "report.json"));
   } catch (const Error& error) {
     stored.outputs.clear();
+    stored.job.maps.clear();
     return fail(stored, error);
   }
   if (stored.job.progress) {

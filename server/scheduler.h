@@ -50,6 +50,7 @@ public:
   [[nodiscard]] api::JobPage list(const api::JobQuery& query) override;
   [[nodiscard]] std::optional<api::Job> cancel(std::string_view id) override;
   [[nodiscard]] std::optional<api::StoredFile> file(std::string_view id, api::JobFile kind) override;
+  [[nodiscard]] std::optional<api::StoredFile> map(std::string_view id, std::string_view name) override;
   [[nodiscard]] bool draining() const override { return draining_; }
   [[nodiscard]] bool queue_full() const override { return queued_ >= settings_.queue; }
   [[nodiscard]] std::chrono::seconds retry_after() const override;
@@ -78,6 +79,7 @@ private:
   void finish(StoredJob& stored, api::JobState state) const;
   void changed(StoredJob& stored);
   void remove_files(const std::string& id);
+  [[nodiscard]] std::optional<api::StoredFile> output(std::string_view id, std::string_view name);
   [[nodiscard]] api::Job shown(const StoredJob& stored) const;
   [[nodiscard]] std::optional<api::Job> find_locked(std::string_view id);
   [[nodiscard]] std::optional<api::Job> earlier_submission(const std::string& key, const std::string& fingerprint);

@@ -1,6 +1,7 @@
 // A model as orbis sees it: the triangle primitives as typed arrays, and around them the whole document, untouched.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -56,13 +57,20 @@ struct Primitive {
   [[nodiscard]] std::vector<Vec3f> positions() const;
 };
 
-// The base colour of a primitive's material, ready to be sampled.
-struct BaseColor {
-  Bytes image;                        // PNG, JPEG or WebP as in the input
-  std::string uv;                     // the attribute that samples it, e.g. "TEXCOORD_0"
+// The textures that every glTF material may have.
+enum class TextureSlot : std::uint8_t { base_color, metallic_roughness, occlusion, emissive, normal };
+inline constexpr std::size_t texture_slots = 5;
+
+// A texture of a primitive's material, ready to be sampled.
+struct MaterialTexture {
+  std::span<const std::byte> image; // PNG, JPEG or WebP as in the input, for as long as the asset lives
+  std::size_t image_number = 0;     // in the document: equal numbers, equal images
+  std::string uv;                   // the attribute that samples it, e.g. "TEXCOORD_0"
   int wrap_s = 10497, wrap_t = 10497; // glTF codes: 33071 clamp, 33648 mirror, 10497 repeat
+  bool nearest = false;             // magnified without interpolation
   // KHR_texture_transform as a 2x3 matrix, row-major: u' = m0 u + m1 v + m2, v' = m3 u + m4 v + m5
-  float transform[6] = {1, 0, 0, 0, 1, 0};
+  std::array<float, 6> transform{1, 0, 0, 0, 1, 0};
+  float scale = 1; // normalTexture.scale
 };
 
 // Opaque: the JSON document and the buffers as they came.
@@ -89,9 +97,21 @@ struct Asset {
 // every node shows at scale zero).
 [[nodiscard]] Asset read_asset(std::span<const std::byte> bytes, const Attachments& attachments, const Limits& limits);
 
-// The base colour texture of a primitive, or nothing where its material has none or its image did not come with the
-// request.
-[[nodiscard]] std::optional<BaseColor> base_color(const Asset& asset, const Primitive& primitive);
+// The texture of a slot, or nothing where the primitive's material has none, its image did not come with the request or
+// is in a format that orbis does not decode (KTX2, AVIF), or the primitive lacks its coordinates. base_color falls back
+// on the diffuse texture of KHR_materials_pbrSpecularGlossiness.
+[[nodiscard]] std::optional<MaterialTexture> material_texture(const Asset& asset, const Primitive& primitive,
+                                                              TextureSlot slot);
+
+// Whether the primitive's material names a texture for the slot, whatever becomes of it.
+[[nodiscard]] bool names_texture(const Asset& asset, const Primitive& primitive, TextureSlot slot);
+
+// Whether something else than its material's own normal map is seen through the primitive's TANGENT: another
+// tangent-space texture (clear coat, anisotropy), or a variant's material with one.
+[[nodiscard]] bool shares_tangents(const Asset& asset, const Primitive& primitive);
+
+// Whether other materials may take the place of the primitive's own (KHR_materials_variants).
+[[nodiscard]] bool has_variants(const Asset& asset, const Primitive& primitive);
 
 // What replaces a primitive in the output. Without indices the primitive stays as it was: all its triangles were
 // degenerate.
@@ -100,30 +120,36 @@ struct NewPrimitive {
   std::vector<Attribute> attributes; // with TEXCOORD_n of the atlas and _SPHERE
   std::vector<std::vector<Attribute>> targets;
   std::uint32_t atlas_texcoord = 0; // n
-  std::uint32_t atlas_page = 0;     // which of the atlas' images it shows
+  // The textures of its material that new images take the place of, sampled by TEXCOORD_n: number of the image.
+  std::map<TextureSlot, std::uint32_t> textures;
+  // The base colour shows its image as it is: the material's base colour factor goes.
+  bool plain_base_color = false;
 };
 
 // A coarser version of the new primitives.
 struct NewLevel {
-  std::vector<NewPrimitive> primitives; // one per primitive of the asset; without indices where nothing is left of it
+  // One per primitive of the asset; without indices where nothing is left of it. They share the full surface's
+  // materials but for their own `textures`.
+  std::vector<NewPrimitive> primitives;
   double screen_coverage = 0; // it may replace the level before where the model fills less of the screen's height
 };
 
 struct NewImage {
   Bytes bytes;
-  std::string mime_type; // "image/png" or "image/jpeg"
+  std::string mime_type; // "image/png", "image/jpeg" or "image/webp"
+  std::string name = "atlas";
 };
 
 // Writes the GLB: the document as it came (nodes, names, materials, skins, animations, cameras, extras, unknown
-// extensions), with primitive i of `asset` replaced by primitives[i], base colour textures by its page of `atlas` on
-// the atlas' TEXCOORD set, and `extras_json` (a JSON object as text) under asset.extras.orbis. A raw Draco input
-// becomes a document with one node, mesh and material. Materials that other primitives use too are cloned, not changed.
+// extensions), with primitive i of `asset` replaced by primitives[i], textures of its material by `images` on the
+// atlas' TEXCOORD set, and `extras_json` (a JSON object as text) under asset.extras.orbis. A raw Draco input becomes a
+// document with one node, mesh and material. Materials that other primitives use too are cloned, not changed.
 // Buffers hold only what is still referenced. Same input, same bytes.
 // With Compression::draco the new primitives are written with KHR_draco_mesh_compression, positions and _SPHERE
 // lossless (the sphere coordinates must not be quantised: they would fold). Levels of detail are added as MSFT_lod
 // (levels.h), their meshes behind the document's, level by level.
 [[nodiscard]] Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives,
-                                std::span<const NewImage> atlas, std::string_view extras_json, Compression compression,
+                                std::span<const NewImage> images, std::string_view extras_json, Compression compression,
                                 std::span<const NewLevel> levels = {});
 
 } // namespace orbis::asset

@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "core/texture/color.h"
 #include "core/texture/image.h"
 
 namespace orbis::asset {
@@ -16,9 +18,17 @@ namespace orbis::asset {
 [[nodiscard]] texture::Image decode_image(std::span<const std::byte> bytes, std::uint64_t max_pixels,
                                           std::string_view where);
 
-// Deterministic: same image, same bytes. PNG keeps alpha, JPEG drops it (quality 1 to 100, 4:4:4 so that charts do not
-// bleed).
-[[nodiscard]] std::vector<std::byte> encode_png(const texture::Image& image);
+// Deterministic: same image, same bytes, on any number of threads (0: as many as the machine has).
+//
+// PNG keeps alpha and 16 bits. JPEG drops alpha (quality 1 to 100, 4:4:4 so that charts do not bleed). WebP keeps alpha;
+// it is lossy with the given quality, or lossless where that is absent, and takes up to 16383 texels a side.
+[[nodiscard]] std::vector<std::byte> encode_png(const texture::Image& image,
+                                                texture::Encoding encoding = texture::Encoding::srgb,
+                                                std::uint32_t threads = 1);
+[[nodiscard]] std::vector<std::byte> encode_png(const texture::Image16& image, texture::Encoding encoding,
+                                                std::uint32_t threads = 1);
 [[nodiscard]] std::vector<std::byte> encode_jpeg(const texture::Image& image, int quality);
+[[nodiscard]] std::vector<std::byte> encode_webp(const texture::Image& image, std::optional<int> quality,
+                                                 std::uint32_t threads = 1);
 
 } // namespace orbis::asset

@@ -1,4 +1,4 @@
-// PNG through libpng. It reports errors by longjmp, which must not cross C++ objects with destructors: all that is
+// PNG files read through libpng (png_encoder.cpp writes them). It reports errors by longjmp, which must not cross C++ objects with destructors: all that is
 // allocated lives in the caller's structs, and the functions that libpng jumps out of hold only plain values.
 #include <png.h>
 
@@ -64,46 +64,6 @@ bool read_rows(Reader& reader, png_bytepp rows) {
   return true;
 }
 
-struct Writer {
-  std::vector<std::byte> bytes;
-  png_structp png = nullptr;
-  png_infop info = nullptr;
-  bool out_of_memory = false;
-
-  Writer() = default;
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
-  ~Writer() { png_destroy_write_struct(&png, &info); }
-};
-
-// No exception may pass through libpng.
-// NOLINTNEXTLINE(readability-non-const-parameter): the signature is libpng's
-void write_bytes(png_structp png, png_bytep data, std::size_t count) {
-  auto& writer = *static_cast<Writer*>(png_get_io_ptr(png));
-  try {
-    const auto* first = reinterpret_cast<const std::byte*>(data);
-    writer.bytes.insert(writer.bytes.end(), first, first + count);
-  } catch (const std::bad_alloc&) {
-    writer.out_of_memory = true;
-  }
-  if (writer.out_of_memory) png_error(png, "out of memory");
-}
-
-bool write_image(Writer& writer, const texture::Image& image) {
-  if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
-  png_set_write_fn(writer.png, &writer, write_bytes, nullptr);
-  png_set_IHDR(writer.png, writer.info, image.width, image.height, 8,
-               image.channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
-  png_set_compression_level(writer.png, 4);
-  png_set_filter(writer.png, 0, PNG_FILTER_SUB | PNG_FILTER_UP);
-  png_write_info(writer.png, writer.info);
-  for (std::uint32_t y = 0; y < image.height; ++y) png_write_row(writer.png, image.at(0, y));
-  png_write_end(writer.png, writer.info);
-  return true;
-}
-
 } // namespace
 
 texture::Image decode_png(const ImageRequest& request) {
@@ -126,18 +86,6 @@ texture::Image decode_png(const ImageRequest& request) {
   for (std::uint32_t y = 0; y < image.height; ++y) rows[y] = image.at(0, y);
   if (!read_rows(reader, rows.data())) request.refuse("is damaged: its PNG data cannot be decoded");
   return image;
-}
-
-std::vector<std::byte> encode_png(const texture::Image& image) {
-  Writer writer;
-  writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, jump_back, no_warning);
-  if (writer.png != nullptr) writer.info = png_create_info_struct(writer.png);
-  if (writer.info == nullptr || !write_image(writer, image)) {
-    if (writer.info == nullptr || writer.out_of_memory)
-      throw Error(ErrorCode::out_of_memory, "there is no memory to encode an image");
-    throw Error(ErrorCode::internal, "an image could not be encoded as PNG");
-  }
-  return std::move(writer.bytes);
 }
 
 } // namespace orbis::asset

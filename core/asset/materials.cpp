@@ -37,11 +37,31 @@ void set_texture(Json& parent, std::string_view key, std::size_t texture, std::u
   }
 }
 
-void show_atlas(Json& material, std::size_t texture, std::uint32_t texcoord) {
-  set_texture(material["pbrMetallicRoughness"], "baseColorTexture", texture, texcoord);
-  if (Json* older = find_path(material, "extensions", specular_glossiness); older && older->is_object()) {
-    set_texture(*older, "diffuseTexture", texture, texcoord);
+void set_slot(Json& material, TextureSlot slot, std::size_t texture, std::uint32_t texcoord) {
+  switch (slot) {
+  case TextureSlot::base_color:
+    set_texture(material["pbrMetallicRoughness"], "baseColorTexture", texture, texcoord);
+    if (Json* older = find_path(material, "extensions", specular_glossiness); older && older->is_object()) {
+      set_texture(*older, "diffuseTexture", texture, texcoord);
+    }
+    return;
+  case TextureSlot::metallic_roughness:
+    return set_texture(material["pbrMetallicRoughness"], "metallicRoughnessTexture", texture, texcoord);
+  case TextureSlot::occlusion:
+    return set_texture(material, "occlusionTexture", texture, texcoord);
+  case TextureSlot::emissive:
+    return set_texture(material, "emissiveTexture", texture, texcoord);
+  case TextureSlot::normal:
+    set_texture(material, "normalTexture", texture, texcoord);
+    material["normalTexture"].erase("scale");
   }
+}
+
+void show_atlas(Json& material, const AtlasLook& look) {
+  for (const auto& [slot, texture] : look.textures) set_slot(material, slot, texture, look.texcoord);
+  if (!look.plain_base_color) return;
+  if (Json* pbr = find(material, "pbrMetallicRoughness")) pbr->erase("baseColorFactor");
+  if (Json* older = find_path(material, "extensions", specular_glossiness)) older->erase("diffuseFactor");
 }
 
 std::string mesh_name(const Json& mesh, std::size_t number) {
@@ -54,7 +74,7 @@ class AtlasMaterials {
 public:
   AtlasMaterials(Json& document, const std::vector<AtlasUser>& users) : document_(document) {
     if (!find(document_, "materials")) document_["materials"] = Json::array();
-    for (const AtlasUser& user : users) shown_by_[{user.mesh, user.primitive}] = {user.texcoord, user.texture};
+    for (const AtlasUser& user : users) look_of_[{user.mesh, user.primitive}] = &user.look;
     find_shared();
   }
 
@@ -71,19 +91,16 @@ public:
   }
 
 private:
-  // What a primitive shows: a texture by some texture coordinates.
-  using Shown = std::pair<std::uint32_t, std::size_t>;
-
-  // A material may be changed in place if all who use it show the same page with the same texture coordinates.
+  // A material may be changed in place if all who use it show the atlas alike.
   void find_shared() {
-    std::map<std::size_t, Shown> first; // by the first user of each material
+    std::map<std::size_t, const AtlasLook*> look; // of the first user of each material
     Json& meshes = document_["meshes"];
     for (std::size_t m = 0; m < meshes.size(); ++m) {
       Json& primitives = meshes[m]["primitives"];
       for (std::size_t p = 0; p < primitives.size(); ++p) {
         const std::size_t own = material_of(primitives[p]);
-        const auto user = shown_by_.find({m, p});
-        if (user == shown_by_.end() || first.try_emplace(own, user->second).first->second != user->second) {
+        const auto user = look_of_.find({m, p});
+        if (user == look_of_.end() || *look.try_emplace(own, user->second).first->second != *user->second) {
           shared_.insert(own);
         }
         share_variants(primitives[p], own);
@@ -101,7 +118,7 @@ private:
 
   std::size_t replacement(std::size_t material, const AtlasUser& user) {
     // Primitives without a material share one for each mesh.
-    const std::tuple key{material, material == no_material ? user.mesh : 0, user.texcoord, user.texture};
+    const std::tuple key{material, material == no_material ? user.mesh : 0, user.look};
     if (const auto known = replacements_.find(key); known != replacements_.end()) return known->second;
     Json& materials = document_["materials"];
     std::size_t number = material;
@@ -113,28 +130,58 @@ private:
       number = materials.size();
       materials.push_back(Json(materials[material]));
     }
-    show_atlas(materials[number], user.texture, user.texcoord);
+    show_atlas(materials[number], user.look);
     replacements_.emplace(key, number);
     return number;
   }
 
   Json& document_;
-  std::map<std::pair<std::size_t, std::size_t>, Shown> shown_by_; // by mesh and primitive
+  std::map<std::pair<std::size_t, std::size_t>, const AtlasLook*> look_of_;
   std::set<std::size_t> shared_;
-  std::map<std::tuple<std::size_t, std::size_t, std::uint32_t, std::size_t>, std::size_t> replacements_;
+  std::map<std::tuple<std::size_t, std::size_t, AtlasLook>, std::size_t> replacements_;
 };
 
 } // namespace
 
-const Json* base_color_texture(const Json& material) {
-  const Json* info = find_path(material, "pbrMetallicRoughness", "baseColorTexture");
-  if (!info) info = find_path(material, "extensions", specular_glossiness, "diffuseTexture");
+const Json* texture_info(const Json& material, TextureSlot slot) {
+  const Json* info = nullptr;
+  switch (slot) {
+  case TextureSlot::base_color:
+    info = find_path(material, "pbrMetallicRoughness", "baseColorTexture");
+    if (!info) info = find_path(material, "extensions", specular_glossiness, "diffuseTexture");
+    break;
+  case TextureSlot::metallic_roughness:
+    info = find_path(material, "pbrMetallicRoughness", "metallicRoughnessTexture");
+    break;
+  case TextureSlot::occlusion:
+    info = find(material, "occlusionTexture");
+    break;
+  case TextureSlot::emissive:
+    info = find(material, "emissiveTexture");
+    break;
+  case TextureSlot::normal:
+    info = find(material, "normalTexture");
+    break;
+  }
   return info && info->is_object() ? info : nullptr;
 }
 
 void assign_atlas(Json& document, const std::vector<AtlasUser>& users) {
   AtlasMaterials materials(document, users);
   for (const AtlasUser& user : users) materials.assign(user);
+}
+
+void LevelMaterials::assign(Json& primitive, const AtlasLook& look) {
+  if (look.textures.empty()) return;
+  const std::size_t before = material_of(primitive);
+  if (before == no_material) throw Error(ErrorCode::internal, "a level's primitive has no material to vary");
+  const auto [known, is_new] = copies_.try_emplace({before, look}, document_["materials"].size());
+  if (is_new) {
+    Json copy = document_["materials"][before];
+    show_atlas(copy, look);
+    document_["materials"].push_back(std::move(copy));
+  }
+  primitive["material"] = known->second;
 }
 
 } // namespace orbis::asset

@@ -1,28 +1,54 @@
-// Materials: where they keep their base colour, and how the atlas takes its place.
+// Materials: where they keep their textures, and how the atlas takes their place.
 #pragma once
 
+#include <compare>
 #include <cstdint>
-#include <optional>
+#include <map>
+#include <utility>
 #include <vector>
 
+#include "core/asset/asset.h"
 #include "core/asset/json.h"
 
 namespace orbis::asset {
 
-// The texture info of the base colour: pbrMetallicRoughness.baseColorTexture, or the diffuse texture of the older
-// KHR_materials_pbrSpecularGlossiness. Null where there is none.
-[[nodiscard]] const Json* base_color_texture(const Json& material);
+// The texture info of a slot; for base_color also the diffuse texture of the older KHR_materials_pbrSpecularGlossiness.
+// Null where there is none.
+[[nodiscard]] const Json* texture_info(const Json& material, TextureSlot slot);
 
-// A primitive of the document that shows a page of the atlas, sampled by TEXCOORD_texcoord.
-struct AtlasUser {
-  std::size_t mesh = 0, primitive = 0; // /meshes/mesh/primitives/primitive
-  std::uint32_t texcoord = 0;
-  std::size_t texture = 0; // of the document: the page
+// What becomes of a material on the atlas.
+struct AtlasLook {
+  std::uint32_t texcoord = 0;                  // TEXCOORD_texcoord samples the new textures
+  std::map<TextureSlot, std::size_t> textures; // slot -> texture of the document
+  bool plain_base_color = false;               // the base colour factor goes
+
+  friend auto operator<=>(const AtlasLook&, const AtlasLook&) = default;
 };
 
-// Gives every user a material whose base colour is its texture: its own, changed in place, where nothing else uses that
-// one, else a copy; a new one (named after the mesh, dielectric, roughness 0.8) where it has none. Other textures stay
-// as they are. The mappings of KHR_materials_variants follow where they name the primitive's own material.
+// A primitive of the document that shows the atlas.
+struct AtlasUser {
+  std::size_t mesh = 0, primitive = 0; // /meshes/mesh/primitives/primitive
+  AtlasLook look;
+};
+
+// Gives every user a material with its look: its own, changed in place, where nothing else uses that one otherwise, else
+// a copy; a new one (named after the mesh, dielectric, roughness 0.8) where it has none. Other textures stay
+// as they are. A normal map that is replaced has scale 1. The mappings of KHR_materials_variants follow where they name
+// the primitive's own material.
 void assign_atlas(Json& document, const std::vector<AtlasUser>& users);
+
+// The primitives of levels of detail share their materials with the full surface, but for textures of their own.
+class LevelMaterials {
+public:
+  explicit LevelMaterials(Json& document) : document_(document) {}
+
+  // Gives a primitive, which has a material of the full surface's, a copy of it with these textures; the same copy for
+  // the same material and look.
+  void assign(Json& primitive, const AtlasLook& look);
+
+private:
+  Json& document_;
+  std::map<std::pair<std::size_t, AtlasLook>, std::size_t> copies_;
+};
 
 } // namespace orbis::asset

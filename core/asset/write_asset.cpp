@@ -44,14 +44,16 @@ void write_geometry(Output& out, Json& primitive, const NewPrimitive& source, Co
 }
 
 // What a caller must not hand over, since no valid document could hold it.
-void check_new_primitive(const NewPrimitive& primitive, std::size_t pages) {
+void check_new_primitive(const NewPrimitive& primitive, std::size_t images) {
   const auto all_have = [](const std::vector<Attribute>& attributes, std::size_t count) {
     return std::all_of(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.count() == count; });
   };
   const std::size_t vertices = primitive.attributes.empty() ? 0 : primitive.attributes.front().count();
   const std::string atlas = "TEXCOORD_" + std::to_string(primitive.atlas_texcoord);
   const bool is_sound =
-      primitive.atlas_page < pages && all_have(primitive.attributes, vertices) && primitive.indices.size() % 3 == 0 &&
+      all_have(primitive.attributes, vertices) && primitive.indices.size() % 3 == 0 &&
+      std::all_of(primitive.textures.begin(), primitive.textures.end(),
+                  [&](const auto& texture) { return texture.second < images; }) &&
       std::all_of(primitive.targets.begin(), primitive.targets.end(),
                   [&](const auto& target) { return all_have(target, vertices); }) &&
       std::all_of(primitive.indices.begin(), primitive.indices.end(), [&](std::uint32_t i) { return i < vertices; }) &&
@@ -90,19 +92,34 @@ template <class T> std::size_t append(Json& json, const char* array, T item) {
   return json[array].size() - 1;
 }
 
-// The pages of the atlas as textures: trilinear, and clamped since charts may touch a page's border.
-std::vector<std::size_t> add_atlas(Output& out, std::span<const NewImage> pages) {
+constexpr std::string_view webp_extension = "EXT_texture_webp";
+
+// The atlas' images as textures: trilinear, and clamped since its charts touch no border. Returns the first one's
+// number; the others follow.
+std::size_t add_textures(Output& out, std::span<const NewImage> images) {
+  const std::size_t first = array_size(out.json, "textures");
+  if (images.empty()) return first;
   const std::size_t sampler =
       append(out.json, "samplers", Json{{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 33071}, {"wrapT", 33071}});
-  std::vector<std::size_t> textures;
-  for (const NewImage& page : pages) {
-    const std::string name = pages.size() == 1 ? "atlas" : "atlas " + std::to_string(textures.size());
-    const std::size_t view = out.add_view(page.bytes);
-    const std::size_t image =
-        append(out.json, "images", Json{{"name", name}, {"mimeType", page.mime_type}, {"bufferView", view}});
-    textures.push_back(append(out.json, "textures", Json{{"name", name}, {"sampler", sampler}, {"source", image}}));
+  for (const NewImage& image : images) {
+    const std::size_t view = out.add_view(image.bytes);
+    const std::size_t source =
+        append(out.json, "images", Json{{"name", image.name}, {"mimeType", image.mime_type}, {"bufferView", view}});
+    Json texture{{"name", image.name}, {"sampler", sampler}};
+    if (image.mime_type == "image/webp") {
+      texture["extensions"][std::string(webp_extension)] = Json{{"source", source}};
+    } else {
+      texture["source"] = source;
+    }
+    append(out.json, "textures", std::move(texture));
   }
-  return textures;
+  return first;
+}
+
+AtlasLook look_of(const NewPrimitive& primitive, std::size_t first_texture) {
+  AtlasLook look{primitive.atlas_texcoord, {}, primitive.plain_base_color};
+  for (const auto& [slot, image] : primitive.textures) look.textures[slot] = first_texture + image;
+  return look;
 }
 
 // A GLB holds its images; a URI stays only where the image did not come, or is in a format that has no media type in
@@ -132,7 +149,8 @@ void require(Json& json, std::string_view extension) {
 }
 
 // Extensions that the result no longer uses are taken off the lists, and those that it came to need are put on.
-void update_extensions(Json& json, const Json& before, std::span<const NewPrimitive> primitives) {
+void update_extensions(Json& json, const Json& before, std::span<const NewPrimitive> primitives,
+                       std::span<const NewImage> images) {
   const std::set<std::string> used = extension_objects(json);
   std::set<std::string> gone;
   for (const std::string& name : extension_objects(before)) {
@@ -152,6 +170,10 @@ void update_extensions(Json& json, const Json& before, std::span<const NewPrimit
     }
   }
   if (used.contains(std::string(draco_extension))) require(json, draco_extension);
+  // Without a fallback in another format.
+  if (std::any_of(images.begin(), images.end(), [](const NewImage& i) { return i.mime_type == "image/webp"; })) {
+    require(json, webp_extension);
+  }
   const bool quantised = std::any_of(primitives.begin(), primitives.end(), [](const NewPrimitive& p) {
     return is_quantised(p.attributes) ||
            std::any_of(p.targets.begin(), p.targets.end(), [](const auto& t) { return is_quantised(t); });
@@ -212,7 +234,7 @@ void drop_dead_channels(Json& json, const Json& before) {
 
 } // namespace
 
-Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, std::span<const NewImage> atlas,
+Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, std::span<const NewImage> images,
                   std::string_view extras_json, Compression compression, std::span<const NewLevel> levels) {
   if (primitives.size() != asset.primitives.size()) {
     throw Error(ErrorCode::internal, "there must be one new primitive for each of the asset's");
@@ -220,28 +242,29 @@ Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, 
   const Document& document = *asset.document;
   Output out(document);
   embed_images(out, document);
+  const std::size_t first_texture = add_textures(out, images);
   std::vector<AtlasUser> users;
   std::vector<std::uint32_t> pages; // of the users
   for (std::size_t i = 0; i < primitives.size(); ++i) {
     const Primitive& old = asset.primitives[i];
     if (primitives[i].indices.empty()) continue;
-    check_new_primitive(primitives[i], atlas.size());
+    check_new_primitive(primitives[i], images.size());
     replace_primitive(out, old, primitives[i], compression);
-    users.push_back({old.mesh, old.primitive, primitives[i].atlas_texcoord, 0});
-    pages.push_back(primitives[i].atlas_page);
+    if (!primitives[i].textures.empty()) users.push_back({old.mesh, old.primitive, look_of(primitives[i], first_texture)});
   }
-  const std::vector<std::size_t> textures = add_atlas(out, atlas);
-  for (std::size_t i = 0; i < users.size(); ++i) users[i].texture = textures[pages[i]];
-  assign_atlas(out.json, users);
+  if (!users.empty()) assign_atlas(out.json, users);
   for (const NewLevel& level : levels)
     for (const NewPrimitive& primitive : level.primitives)
-      if (!primitive.indices.empty()) check_new_primitive(primitive, atlas.size());
+      if (!primitive.indices.empty()) check_new_primitive(primitive, images.size());
+  LevelMaterials materials(out.json);
   add_levels(out, asset, primitives, levels, [&](const Json& base, const NewPrimitive& geometry) {
-    return with_geometry(out, base, geometry, compression);
+    Json primitive = with_geometry(out, base, geometry, compression);
+    materials.assign(primitive, look_of(geometry, first_texture));
+    return primitive;
   });
   drop_dead_channels(out.json, document.json);
   if (!document.keeps_numbers) out.drop_unreferenced();
-  update_extensions(out.json, document.json, primitives);
+  update_extensions(out.json, document.json, primitives, images);
   write_extras(out.json, extras_json);
   return out.glb();
 }

@@ -30,6 +30,7 @@ public:
     out_.primitives.resize(asset.primitives.size());
     out_.sources.resize(asset.primitives.size());
     out_.component_of.resize(asset.primitives.size());
+    out_.page_of.resize(asset.primitives.size());
     out_.of_cut_vertex.resize(cut.vertices.size());
     out_.of_surface_vertex.resize(surface.mesh.positions.size());
   }
@@ -44,7 +45,7 @@ public:
         if (!seen_[v]) add(v, primitive);
         out_.primitives[primitive].indices.push_back(out_.of_cut_vertex[v].vertex);
       }
-      out_.primitives[primitive].atlas_page = cut_.page_of(t);
+      out_.page_of[primitive] = cut_.page_of(t);
     }
     return std::move(out_);
   }

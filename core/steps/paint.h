@@ -1,29 +1,32 @@
-// What the atlas shows, and the pictures of it.
+// Pictures that do not come from the model: the test pattern, an uploaded cube map; and the preview.
 #pragma once
 
 #include <cstddef>
+#include <span>
+#include <string>
 #include <vector>
 
-#include "core/asset/asset.h"
 #include "core/pipeline.h"
-#include "core/steps/delivery.h"
 #include "core/steps/surface.h"
 #include "core/texture/atlas.h"
 #include "core/texture/image.h"
 
 namespace orbis {
 
-// Bakes what options.texture asks for, one image for each page; fills report.atlas.source. texture=auto takes the
-// model's own base colour where any of its materials has a base colour texture that came with the request, else the
-// test pattern. Throws Error: invalid_option where texture=base_color or cubemap is asked for and there is no such
-// image, or not the right ones; malformed, unsupported_format or too_large for an image that cannot be read.
-[[nodiscard]] std::vector<texture::Image> paint(const Request& request, const Limits& limits, const asset::Asset& asset,
-                                                const Surface& surface, const texture::CutMesh& cut,
-                                                const Delivery& delivery, Progress& progress, Report& report);
+// Whether the base colour may be the model's own: texture=auto or base_color.
+[[nodiscard]] bool may_show_own_colors(const Options& options);
 
-// The pages as options.texture_format asks for. first_png: the first page as PNG, which is made in any case.
-[[nodiscard]] std::vector<asset::NewImage>
-encode_atlas(std::span<const texture::Image> pages, const std::vector<std::byte>& first_png, const Options& options);
+// "base_color", "cubemap" or "pattern": what the base colour shows. texture=auto takes the model's own colours where it
+// has any, else the test pattern. Throws Error{invalid_option} where texture=base_color is asked for and there are none.
+[[nodiscard]] std::string source_name(const Options& options, bool has_own_colors);
+
+// The images that texture=cubemap takes; none with another texture. Throws Error: missing_resource where they did not
+// come; malformed, unsupported_format or too_large for one that cannot be read.
+[[nodiscard]] std::vector<texture::Image> uploaded_images(const Request& request, const Limits& limits);
+
+// A page with the uploaded images on it, or where there are none with the test pattern.
+[[nodiscard]] texture::Image paint(std::span<const texture::Image> uploaded, const texture::CutMesh& cut,
+                                   std::uint32_t page, Progress& progress);
 
 // The sphere and the model side by side, with the atlas on both, as PNG.
 [[nodiscard]] std::vector<std::byte> preview(const Surface& surface, const texture::CutMesh& cut,

@@ -9,6 +9,7 @@ const SrgbTables srgb_tables;
 SrgbTables::SrgbTables() {
   for (std::size_t i = 0; i < linear.size(); ++i) {
     const double c = static_cast<double>(i) / 255;
+    fraction[i] = static_cast<float>(c);
     linear[i] = static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
   }
   for (std::size_t i = 0; i < steps; ++i) {

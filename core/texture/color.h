@@ -13,6 +13,7 @@ struct SrgbTables {
   // entry is the byte of the middle of its step, so that a lookup need not round.
   static constexpr std::size_t steps = 1U << 16U;
   std::array<float, 256> linear{};
+  std::array<float, 256> fraction{}; // i / 255
   std::array<std::uint8_t, steps> srgb{};
 
   SrgbTables();
@@ -34,6 +35,10 @@ extern const SrgbTables srgb_tables;
   if (!(value > 0)) return 0;
   return value >= 1 ? 255 : static_cast<std::uint8_t>(std::lround(255 * value));
 }
+
+// How an image's bytes mean numbers: colours as sRGB, data (roughness, normals, …) as fractions of 255. Alpha is linear
+// in both.
+enum class Encoding : std::uint8_t { srgb, linear };
 
 using Rgb = std::array<std::uint8_t, 3>;
 // a where t = 0, b where t = 1, mixed in linear light.

@@ -1,4 +1,4 @@
-// An image in memory: rows from top to bottom, channels interleaved, 8 bits each.
+// Images in memory: rows from top to bottom, channels interleaved, 8 or 16 bits each.
 #pragma once
 
 #include <cstddef>
@@ -16,6 +16,19 @@ struct Image {
     return pixels.data() + (std::size_t{y} * width + x) * channels;
   }
   [[nodiscard]] std::uint8_t* at(std::uint32_t x, std::uint32_t y) {
+    return pixels.data() + (std::size_t{y} * width + x) * channels;
+  }
+};
+
+struct Image16 {
+  std::uint32_t width = 0, height = 0;
+  std::uint32_t channels = 3;        // RGB
+  std::vector<std::uint16_t> pixels; // width * height * channels
+
+  [[nodiscard]] const std::uint16_t* at(std::uint32_t x, std::uint32_t y) const {
+    return pixels.data() + (std::size_t{y} * width + x) * channels;
+  }
+  [[nodiscard]] std::uint16_t* at(std::uint32_t x, std::uint32_t y) {
     return pixels.data() + (std::size_t{y} * width + x) * channels;
   }
 };

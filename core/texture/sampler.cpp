@@ -26,7 +26,7 @@ std::uint32_t neighbour(std::int64_t i, std::uint32_t size, Wrap wrap) {
 
 } // namespace
 
-Image halved(const Image& image) {
+Image halved(const Image& image, Encoding encoding) {
   Image half{(image.width + 1) / 2, (image.height + 1) / 2, image.channels, {}};
   half.pixels.resize(std::size_t{half.width} * half.height * half.channels);
   for (std::uint32_t y = 0; y < half.height; ++y)
@@ -34,9 +34,9 @@ Image halved(const Image& image) {
       const std::uint32_t x1 = std::min(2 * x + 1, image.width - 1), y1 = std::min(2 * y + 1, image.height - 1);
       Light sum{};
       for (const Light& light :
-           {load(image, 2 * x, 2 * y), load(image, x1, 2 * y), load(image, 2 * x, y1), load(image, x1, y1)})
+           {load(image, 2 * x, 2 * y, encoding), load(image, x1, 2 * y, encoding), load(image, 2 * x, y1, encoding), load(image, x1, y1, encoding)})
         for (std::size_t c = 0; c < 4; ++c) sum[c] += 0.25F * light[c];
-      store(sum, half, x, y);
+      store(sum, half, x, y, encoding);
     }
   return half;
 }
@@ -51,12 +51,12 @@ Footprint footprint_of(double texels) {
   return footprint;
 }
 
-Sampler::Sampler(const Image& image, Wrap wrap_u, Wrap wrap_v, std::uint32_t levels)
-    : image_(&image), wrap_u_(wrap_u), wrap_v_(wrap_v) {
+Sampler::Sampler(const Image& image, Wrap wrap_u, Wrap wrap_v, std::uint32_t levels, Encoding encoding)
+    : image_(&image), wrap_u_(wrap_u), wrap_v_(wrap_v), encoding_(encoding) {
   const Image* last = &image;
   mips_.reserve(32);
   for (std::uint32_t level = 1; level < levels && (last->width > 1 || last->height > 1); ++level)
-    last = &mips_.emplace_back(halved(*last));
+    last = &mips_.emplace_back(halved(*last, encoding));
 }
 
 Light Sampler::sample(double x, double y, std::uint32_t level) const {
@@ -70,11 +70,20 @@ Light Sampler::sample(double x, double y, std::uint32_t level) const {
   const auto i = static_cast<std::int64_t>(left), j = static_cast<std::int64_t>(top);
   const std::uint32_t x0 = neighbour(i, image.width, wrap_u_), x1 = neighbour(i + 1, image.width, wrap_u_);
   const std::uint32_t y0 = neighbour(j, image.height, wrap_v_), y1 = neighbour(j + 1, image.height, wrap_v_);
-  const Light a = load(image, x0, y0), b = load(image, x1, y0), c = load(image, x0, y1), d = load(image, x1, y1);
+  const Light a = load(image, x0, y0, encoding_), b = load(image, x1, y0, encoding_);
+  const Light c = load(image, x0, y1, encoding_), d = load(image, x1, y1, encoding_);
   Light result{};
   for (std::size_t k = 0; k < 4; ++k)
     result[k] = (1 - t) * ((1 - s) * a[k] + s * b[k]) + t * ((1 - s) * c[k] + s * d[k]);
   return result;
+}
+
+Light Sampler::nearest(double x, double y) const {
+  const auto texel = [](double at, std::uint32_t size) {
+    return std::min(static_cast<std::uint32_t>(std::max(at, 0.0)), size - 1);
+  };
+  return load(*image_, texel(wrapped(x, image_->width, wrap_u_), image_->width),
+              texel(wrapped(y, image_->height, wrap_v_), image_->height), encoding_);
 }
 
 } // namespace orbis::texture

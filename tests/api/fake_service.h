@@ -16,6 +16,7 @@ class FakeService final : public api::JobService {
 public:
   std::map<std::string, api::Job, std::less<>> jobs;
   std::map<api::JobFile, api::StoredFile> files;
+  std::map<std::string, api::StoredFile, std::less<>> maps;
   std::vector<api::Submission> submissions;
   bool is_draining = false, is_full = false;
   // What happens to a submitted job at once.
@@ -67,6 +68,10 @@ public:
   std::optional<api::StoredFile> file(std::string_view, api::JobFile kind) override {
     const auto it = files.find(kind);
     return it == files.end() ? std::nullopt : std::optional(it->second);
+  }
+  std::optional<api::StoredFile> map(std::string_view, std::string_view name) override {
+    const auto it = maps.find(name);
+    return it == maps.end() ? std::nullopt : std::optional(it->second);
   }
   [[nodiscard]] bool draining() const override { return is_draining; }
   [[nodiscard]] bool queue_full() const override { return is_full; }

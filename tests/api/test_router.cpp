@@ -48,6 +48,8 @@ struct Desk {
       job.result = api::JobResult{std::string(64, 'b'), 10};
       job.timing = {5.0, 100.0, 90.0, 1, {{"refine", 60, 55}}};
       service.files[api::JobFile::result] = {directory.file("result.glb", "0123456789"), 10, std::string(64, 'b')};
+      job.maps = {"normal.png"};
+      service.maps["normal.png"] = {directory.file("map-normal.png", "PNG"), 3, std::string(64, 'd')};
       service.files[api::JobFile::report] = {directory.file("report.json", "{}"), 2, std::string(64, 'c')};
     }
     service.jobs[job.id] = job;
@@ -65,6 +67,19 @@ TEST_CASE_FIXTURE(Desk, "a model that is posted is a job: 202, Location, Retry-A
   CHECK(response.header("Location") == "/v1/jobs/" + body_of(response)["id"].get<std::string>());
   CHECK(response.header("Retry-After") == "1");
   CHECK(body_of(response)["options"]["texture_size"] == 512);
+}
+
+TEST_CASE_FIXTURE(Desk, "the maps of a job are listed in its links and served under their names") {
+  const std::string address = job(api::JobState::succeeded);
+  const json links = body_of(ask({"GET", address, {}, {}, {}}))["links"];
+  CHECK(links["maps"] == json{{"normal.png", address + "/maps/normal.png"}});
+  const auto map = ask({"GET", address + "/maps/normal.png", {}, {}, {}});
+  CHECK(map.status == 200);
+  CHECK(map.header("Content-Type") == "image/png");
+  CHECK(map.header("ETag") == "\"" + std::string(64, 'd') + "\"");
+  CHECK(ask({"GET", address + "/maps/emissive.png", {}, {}, {}}).status == 404);
+  CHECK(ask({"POST", address + "/maps/normal.png", {}, {}, {}}).status == 405);
+  CHECK(ask({"GET", job(api::JobState::running) + "/maps/normal.png", {}, {}, {}}).status == 409);
 }
 
 TEST_CASE_FIXTURE(Desk, "options come from the query and from the options part, and the query wins") {

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "server/fake_runner.h"
+#include "server/job_files.h"
 #include "server/scheduler.h"
 
 using namespace orbis;
@@ -83,6 +84,17 @@ TEST_CASE("a job succeeds, with its files, times and triangles") {
     const auto file = service.scheduler->file(job.id, kind);
     REQUIRE(file.has_value());
     CHECK(std::filesystem::file_size(file->path) == file->bytes);
+  }
+  CHECK(job.maps == std::vector<std::string>{"normal.png"});
+  CHECK(service.scheduler->map(job.id, "normal.png").has_value());
+  CHECK_FALSE(service.scheduler->map(job.id, "other.png").has_value());
+}
+
+TEST_CASE("only names that stay in a job's directory are maps") {
+  CHECK(server::map_of_output(server::output_of_map("normal-2.png")) == "normal-2.png");
+  for (const char* name : {"normal.png", "map-../x.png", "map-a/b.png", "map-.png.", "map-", "map-N.png", "map-a.b.png"}) {
+    CAPTURE(name);
+    CHECK_FALSE(server::map_of_output(name).has_value());
   }
 }
 

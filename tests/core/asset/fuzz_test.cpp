@@ -124,15 +124,15 @@ bool survives(const test::Bytes& bytes) {
     const Asset asset = read_asset(bytes, {}, small_limits());
     std::vector<NewPrimitive> primitives;
     for (const Primitive& p : asset.primitives) {
-      (void)base_color(asset, p);
-      primitives.push_back({p.indices, p.attributes, p.targets, 0});
+      for (std::size_t slot = 0; slot < texture_slots; ++slot)
+        (void)material_texture(asset, p, static_cast<TextureSlot>(slot));
+      primitives.push_back({p.indices, p.attributes, p.targets, 0, {{TextureSlot::base_color, 0}}});
       if (!p.find("TEXCOORD_0")) {
         primitives.back().attributes.push_back(
             {"TEXCOORD_0", ComponentType::f32, false, 2, Bytes(p.vertex_count() * 8)});
       }
     }
-    const Bytes out =
-        write_asset(asset, primitives, std::vector{NewImage{test::tiny_png(), "image/png"}}, "{}", Compression::none);
+    const Bytes out = write_asset(asset, primitives, std::vector{NewImage{test::tiny_png(), "image/png"}}, "{}", Compression::none);
     (void)read_asset(out, {}, Limits{});
     return true;
   } catch (const Error& error) {

@@ -50,16 +50,28 @@ GltfBuilder textured() {
 
 Json& info_of(GltfBuilder& b) { return b.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]; }
 
-std::optional<BaseColor> base_color_of(const GltfBuilder& b, const Attachments& attachments = {}) {
+// A texture with its image's bytes, which outlive the asset.
+struct Texture : MaterialTexture {
+  test::Bytes bytes;
+};
+
+std::optional<Texture> texture_of(const GltfBuilder& b, TextureSlot slot, const Attachments& attachments = {}) {
   const Asset asset = read(b.glb(), attachments);
-  return base_color(asset, asset.primitives.at(0));
+  const auto found = material_texture(asset, asset.primitives.at(0), slot);
+  if (!found) return std::nullopt;
+  return Texture{*found, {found->image.begin(), found->image.end()}};
 }
 
-Bytes write(const Asset& asset, std::vector<std::uint32_t> texcoords = {}) {
+std::optional<Texture> base_color_of(const GltfBuilder& b, const Attachments& attachments = {}) {
+  return texture_of(b, TextureSlot::base_color, attachments);
+}
+
+Bytes write(const Asset& asset, std::vector<std::uint32_t> texcoords = {},
+            const std::map<TextureSlot, std::uint32_t>& textures = {{TextureSlot::base_color, 0}}, bool plain = false) {
   std::vector<NewPrimitive> primitives;
   for (const Primitive& p : asset.primitives) {
     const std::uint32_t n = texcoords.empty() ? 2 : texcoords.at(primitives.size());
-    primitives.push_back({p.indices, p.attributes, {}, n});
+    primitives.push_back({p.indices, p.attributes, {}, n, textures, plain});
     for (const std::uint32_t set : {0u, 1u, 2u}) {
       const std::string name = "TEXCOORD_" + std::to_string(set);
       if (!p.find(name))
@@ -79,7 +91,7 @@ TEST_CASE("the base colour is found with its coordinates, wrapping and transform
   GltfBuilder b = textured();
   auto color = base_color_of(b);
   REQUIRE(color);
-  CHECK(color->image == test::tiny_png());
+  CHECK(color->bytes == test::tiny_png());
   CHECK(color->uv == "TEXCOORD_0");
   CHECK(color->wrap_s == 33071);
   CHECK(color->wrap_t == 33648);
@@ -101,7 +113,7 @@ TEST_CASE("a texture transform scales, then turns counter-clockwise with v point
   REQUIRE(color);
   CHECK(color->uv == "TEXCOORD_1");
   // (u, v) = (1, 0): scaled (2, 0), turned towards the top of the image (0, -2), moved.
-  const float* m = color->transform;
+  const auto& m = color->transform;
   CHECK(m[0] + m[2] == doctest::Approx(0.25));
   CHECK(m[3] + m[5] == doctest::Approx(0.5 - 2));
   // (0, 1): scaled (0, 3), turned (3, 0), moved.
@@ -128,17 +140,17 @@ TEST_CASE("an image comes from a view, a data URI or a file of the request; WebP
   GltfBuilder b = textured();
   b.json["images"][0] = Json{{"uri", "data:image/png;base64," + test::base64(test::tiny_png())}};
   REQUIRE(base_color_of(b));
-  CHECK(base_color_of(b)->image == test::tiny_png());
+  CHECK(base_color_of(b)->bytes == test::tiny_png());
 
   b.json["images"][0] = Json{{"uri", "textures/a%20b.jpg"}};
   const Attachments files{{"a b.jpg", marked(jpeg_head, 1)}};
   REQUIRE(base_color_of(b, files));
-  CHECK(base_color_of(b, files)->image == files.at("a b.jpg"));
+  CHECK(base_color_of(b, files)->bytes == files.at("a b.jpg"));
 
   const auto webp = marked("RIFF....WEBP", 2);
   b.append("images", Json{{"bufferView", b.add_view(webp)}, {"mimeType", "image/webp"}});
   b.json["textures"][0]["extensions"]["EXT_texture_webp"] = {{"source", 1}};
-  CHECK(base_color_of(b, files)->image == webp);
+  CHECK(base_color_of(b, files)->bytes == webp);
 }
 
 TEST_CASE("the atlas takes the place of the base colour, and the old image goes when nothing else shows it") {
@@ -173,6 +185,65 @@ TEST_CASE("other textures keep their image, coordinates and transform") {
   CHECK(json["textures"].size() == 3);
   CHECK(json["images"].size() == 2);
   CHECK(json["extensionsUsed"] == b.json["extensionsUsed"]);
+}
+
+TEST_CASE("every slot of a material is found, and taken over where a new image is given for it") {
+  GltfBuilder b = textured();
+  Json& material = b.json["materials"][0];
+  material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = {{"index", 0}, {"texCoord", 1}};
+  material["occlusionTexture"] = {{"index", 0}, {"strength", 0.5}};
+  material["emissiveTexture"] = {{"index", 0}};
+  material["normalTexture"] = {{"index", 0}, {"scale", 0.25}};
+  CHECK(texture_of(b, TextureSlot::metallic_roughness)->uv == "TEXCOORD_1");
+  CHECK(texture_of(b, TextureSlot::occlusion)->uv == "TEXCOORD_0");
+  CHECK(texture_of(b, TextureSlot::emissive)->bytes == test::tiny_png());
+  CHECK(texture_of(b, TextureSlot::normal)->scale == 0.25f);
+
+  const std::map<TextureSlot, std::uint32_t> two{{TextureSlot::occlusion, 0}, {TextureSlot::normal, 0}};
+  const Json after = json_of(write(read(b.glb()), {}, two))["materials"][0];
+  const Json& taken = after["normalTexture"];
+  CHECK(taken["texCoord"] == 2);
+  CHECK_FALSE(taken.contains("scale")); // it is in the image
+  CHECK(after["occlusionTexture"] == Json{{"index", taken["index"]}, {"strength", 0.5}, {"texCoord", 2}});
+  CHECK(taken["index"] != after["emissiveTexture"]["index"]);
+  CHECK(after["emissiveTexture"] == material["emissiveTexture"]);
+  CHECK(after["pbrMetallicRoughness"] == material["pbrMetallicRoughness"]);
+}
+
+TEST_CASE("a picture that must show as it is takes the base colour factor away, the model's own texture keeps it") {
+  GltfBuilder b = textured();
+  b.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 0, 0, 1};
+  const std::map<TextureSlot, std::uint32_t> color{{TextureSlot::base_color, 0}};
+  CHECK(json_of(write(read(b.glb()), {}, color))["materials"][0]["pbrMetallicRoughness"].contains("baseColorFactor"));
+  CHECK_FALSE(json_of(write(read(b.glb()), {}, color, true))["materials"][0]["pbrMetallicRoughness"].contains(
+      "baseColorFactor"));
+}
+
+TEST_CASE("a WebP image is declared as the extension that it needs") {
+  GltfBuilder b = textured();
+  const Asset asset = read(b.glb());
+  NewPrimitive p{asset.primitives[0].indices, asset.primitives[0].attributes, {}, 0, {{TextureSlot::base_color, 0}}};
+  const std::vector<NewImage> images{{marked("RIFF....WEBP", 2), "image/webp", "base_color"}};
+  const Json json = json_of(write_asset(asset, std::vector{p}, images, "{}", Compression::none));
+  CHECK(json["extensionsRequired"] == Json{"EXT_texture_webp"});
+  CHECK_FALSE(json["textures"][0].contains("source"));
+  CHECK(json["textures"][0]["extensions"]["EXT_texture_webp"]["source"] == 0);
+  CHECK(json["images"][0]["name"] == "base_color");
+}
+
+TEST_CASE("who else looks through a primitive's tangents is found") {
+  GltfBuilder b = textured();
+  const auto shared = [&] {
+    const Asset asset = read(b.glb());
+    return shares_tangents(asset, asset.primitives[0]);
+  };
+  CHECK_FALSE(shared());
+  b.json["extensionsUsed"] = {"KHR_materials_clearcoat"};
+  Json& extensions = b.json["materials"][0]["extensions"];
+  extensions["KHR_materials_clearcoat"] = {{"clearcoatTexture", {{"index", 0}}}};
+  CHECK_FALSE(shared());
+  extensions["KHR_materials_clearcoat"]["clearcoatNormalTexture"] = {{"index", 0}};
+  CHECK(shared());
 }
 
 TEST_CASE("a material that points or other coordinates use too is cloned, not changed") {

@@ -44,6 +44,7 @@ NewPrimitive with_atlas(const Primitive& primitive) {
   }
   out.attributes.push_back(uv);
   out.attributes.push_back(sphere);
+  out.textures[TextureSlot::base_color] = 0;
   return out;
 }
 
@@ -288,6 +289,7 @@ TEST_CASE("new primitives that do not fit together are refused") {
   };
   refused([](NewPrimitive& p) { p.indices[0] = 4; });
   refused([](NewPrimitive& p) { p.indices.pop_back(); });
+  refused([](NewPrimitive& p) { p.textures[TextureSlot::normal] = 1; });
   refused([](NewPrimitive& p) { p.attributes.pop_back(), p.attributes.pop_back(); });
   refused([](NewPrimitive& p) { p.attributes[0].data.resize(36); });
   refused([](NewPrimitive& p) { p.targets.push_back({p.attributes[0]}), p.targets[0][0].data.resize(36); });

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "core/asset/asset.h"
@@ -38,16 +39,16 @@ double rotation_of(const JsonReader& reader, const Json& transform) {
 }
 
 // KHR_texture_transform: scale, then rotate counter-clockwise as seen with v pointing down, then move.
-void read_transform(const JsonReader& reader, const Json& transform, BaseColor& out) {
+void read_transform(const JsonReader& reader, const Json& transform, MaterialTexture& out) {
   const double angle = rotation_of(reader, transform);
   const double c = std::cos(angle), s = std::sin(angle);
   const double su = number_at(reader, transform, "scale", 0, 1), sv = number_at(reader, transform, "scale", 1, 1);
   const double m[6] = {c * su,  s * sv, number_at(reader, transform, "offset", 0, 0),
                        -s * su, c * sv, number_at(reader, transform, "offset", 1, 0)};
-  for (std::size_t i = 0; i < 6; ++i) out.transform[i] = static_cast<float>(m[i]);
+  for (std::size_t i = 0; i < out.transform.size(); ++i) out.transform[i] = static_cast<float>(m[i]);
 }
 
-void read_wrapping(const Document& document, const JsonReader& reader, const Json& texture, BaseColor& out) {
+void read_sampler(const Document& document, const JsonReader& reader, const Json& texture, MaterialTexture& out) {
   const auto number = reader.integer(texture, "sampler");
   if (!number) return;
   const Json& sampler = document.json["samplers"][*number];
@@ -58,33 +59,74 @@ void read_wrapping(const Document& document, const JsonReader& reader, const Jso
   };
   out.wrap_s = wrap("wrapS");
   out.wrap_t = wrap("wrapT");
+  out.nearest = reader.integer(sampler, "magFilter", 65535).value_or(9729) == 9728;
+}
+
+float read_scale(const JsonReader& reader, const Json& info) {
+  const Json* scale = reader.member(info, "scale");
+  if (!scale) return 1;
+  if (!scale->is_number()) reader.fail(info, "scale", "must be a number");
+  return scale->get<float>();
+}
+
+bool has_other_tangent_textures(const Json& material) {
+  return find_path(material, "extensions", "KHR_materials_clearcoat", "clearcoatNormalTexture") != nullptr ||
+         find_path(material, "extensions", "KHR_materials_anisotropy") != nullptr;
+}
+
+const Json* variant_mappings(const Asset& asset, const Primitive& primitive) {
+  const Json& json = asset.document->json["meshes"][primitive.mesh]["primitives"][primitive.primitive];
+  const Json* found = find_path(json, "extensions", "KHR_materials_variants", "mappings");
+  return found && found->is_array() ? found : nullptr;
 }
 
 } // namespace
 
-std::optional<BaseColor> base_color(const Asset& asset, const Primitive& primitive) {
+std::optional<MaterialTexture> material_texture(const Asset& asset, const Primitive& primitive, TextureSlot slot) {
   const Document& document = *asset.document;
   if (!primitive.material) return std::nullopt;
-  const Json* info = base_color_texture(document.json["materials"][*primitive.material]);
+  const Json* info = texture_info(document.json["materials"][*primitive.material], slot);
   if (!info) return std::nullopt;
   const JsonReader reader(document.json);
   const Json& texture = document.json["textures"][reader.required_integer(*info, "index")];
   const auto image = image_of(document, texture);
   if (!image) return std::nullopt;
 
-  BaseColor out;
+  MaterialTexture out;
   std::uint64_t set = reader.integer(*info, "texCoord", 1000).value_or(0);
   if (const Json* transform = find_path(*info, "extensions", transform_extension)) {
     read_transform(reader, *transform, out);
     set = reader.integer(*transform, "texCoord", 1000).value_or(set);
   }
   out.uv = "TEXCOORD_" + std::to_string(set);
-  const Attribute* uv = primitive.find(out.uv);
-  if (!uv) return std::nullopt;
-  read_wrapping(document, reader, texture, out);
-  const auto bytes = *document.image(*image);
-  out.image.assign(bytes.begin(), bytes.end());
+  if (!primitive.find(out.uv)) return std::nullopt;
+  if (slot == TextureSlot::normal) out.scale = read_scale(reader, *info);
+  read_sampler(document, reader, texture, out);
+  out.image = *document.image(*image);
+  out.image_number = *image;
   return out;
+}
+
+bool names_texture(const Asset& asset, const Primitive& primitive, TextureSlot slot) {
+  return primitive.material && texture_info(asset.document->json["materials"][*primitive.material], slot) != nullptr;
+}
+
+bool shares_tangents(const Asset& asset, const Primitive& primitive) {
+  const Json& json = asset.document->json;
+  if (primitive.material && has_other_tangent_textures(json["materials"][*primitive.material])) return true;
+  const Json* mappings = variant_mappings(asset, primitive);
+  if (!mappings) return false;
+  return std::any_of(mappings->begin(), mappings->end(), [&](const Json& mapping) {
+    const Json* number = find(mapping, "material");
+    if (!number || number->get<std::size_t>() == primitive.material) return false;
+    const Json& material = json["materials"][number->get<std::size_t>()];
+    return texture_info(material, TextureSlot::normal) != nullptr || has_other_tangent_textures(material);
+  });
+}
+
+bool has_variants(const Asset& asset, const Primitive& primitive) {
+  const Json* mappings = variant_mappings(asset, primitive);
+  return mappings && !mappings->empty();
 }
 
 } // namespace orbis::asset

@@ -1,0 +1,44 @@
+// Which textures of the input's materials are baked, and their images.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "core/asset/asset.h"
+#include "core/options.h"
+#include "core/report.h"
+#include "core/steps/delivery.h"
+#include "core/texture/image.h"
+#include "core/texture/texture_reader.h"
+
+namespace orbis {
+
+// One slot of all primitives; nothing where a primitive's material has no such texture, or keeps it.
+using SlotTextures = std::vector<std::optional<asset::MaterialTexture>>;
+
+// The textures of a slot, of the primitives that have triangles in the result. Notes a texture that stays on its old
+// coordinates because its image did not come or cannot be decoded.
+[[nodiscard]] SlotTextures textures_of(const asset::Asset& asset, const Delivery& delivery, asset::TextureSlot slot,
+                                       Report& report);
+
+// Decoded images by their number in the document.
+using DecodedImages = std::map<std::size_t, texture::Image>;
+
+// Decodes what the textures name. A primitive whose image is in an unknown format loses its texture, with a note; so does
+// one whose image is damaged, unless that is an error (`strict`). Throws Error: malformed, too_large.
+[[nodiscard]] DecodedImages decode(const asset::Asset& asset, const Limits& limits, bool strict, SlotTextures& textures,
+                                   Report& report);
+
+// How the textures are to be read, by primitive; without a texture: white. Refers to `images`.
+[[nodiscard]] std::vector<texture::TextureSource> sources_of(const SlotTextures& textures, const DecodedImages& images);
+
+// By primitive, whether COLOR_0 is baked into its base colour: it has one that is not white throughout, no morph target
+// moves it, and no variant's material would miss it.
+[[nodiscard]] std::vector<bool> bakes_vertex_colors(const asset::Asset& asset, const Delivery& delivery);
+
+// "/meshes/1/primitives/0"
+[[nodiscard]] std::string pointer_to(const asset::Primitive& p);
+
+} // namespace orbis

@@ -1,0 +1,35 @@
+// Ambient occlusion: how much of the sky each point of the surface sees.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/mesh/thread_pool.h"
+#include "core/texture/image.h"
+#include "core/texture/ray_tree.h"
+#include "core/texture/texel_map.h"
+#include "core/vec3.h"
+
+namespace orbis::texture {
+
+inline constexpr std::uint32_t rays_a_texel = 64;
+
+// What hides the sky, by number: surfaces in spaces of their own do not hide each other.
+struct Occluders {
+  std::span<const RayTree> trees;
+  std::span<const std::uint32_t> tree_of; // by triangle of the page's mesh
+};
+
+// The visible part of the sky above each texel's point, weighted by the cosine to its normal (what glTF's occlusion
+// texture multiplies ambient light with), in all three channels: rays_a_texel rays a texel over the hemisphere of the
+// normal, a Hammersley set that is turned from texel to texel, then smoothed over 3 x 3 texels of the same chart. Rays
+// that start into the surface's own triangle do not count.
+//   positions, normals  at the corners of the page mesh's triangles; normals are unit
+//   offset              how far above the surface rays start, in its units
+[[nodiscard]] Image bake_occlusion(const TexelMap& map, std::span<const std::array<Vec3f, 3>> positions,
+                                   std::span<const std::array<Vec3f, 3>> normals, const Occluders& occluders,
+                                   float offset, mesh::ThreadPool& pool);
+
+} // namespace orbis::texture

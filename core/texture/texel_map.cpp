@@ -1,0 +1,153 @@
+#include "core/texture/texel_map.h"
+
+#include <algorithm>
+
+namespace orbis::texture {
+namespace {
+
+constexpr std::uint32_t band_rows = 32; // rasterised by one thread at a time
+
+// The bands that a triangle reaches into: [first, end).
+struct Bands {
+  std::uint32_t first = 0, end = 0;
+};
+
+Bands bands_of(const std::array<RasterPoint, 3>& corners, std::uint32_t height) {
+  const auto [low, high] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
+  const double last = height - 1.0;
+  const auto first = static_cast<std::uint32_t>(std::clamp(low - 1, 0.0, last));
+  const auto end = static_cast<std::uint32_t>(std::clamp(high + 1, 0.0, last));
+  return {first / band_rows, end / band_rows + 1};
+}
+
+// The triangles of each band, one list behind the other, ascending in each.
+struct Buckets {
+  std::vector<std::uint32_t> first; // band -> its first entry; one past the end
+  std::vector<std::uint32_t> triangles;
+};
+
+template <class BandsOf>
+Buckets sort_into_bands(std::span<const std::uint32_t> shown, std::uint32_t bands, BandsOf bands_of_triangle) {
+  Buckets out;
+  out.first.assign(bands + 1, 0);
+  for (const std::uint32_t t : shown) {
+    const Bands reach = bands_of_triangle(t);
+    for (std::uint32_t b = reach.first; b < reach.end; ++b) ++out.first[b + 1];
+  }
+  for (std::uint32_t b = 0; b < bands; ++b) out.first[b + 1] += out.first[b];
+  out.triangles.resize(out.first[bands]);
+  std::vector<std::uint32_t> next(out.first.begin(), out.first.end() - 1);
+  for (const std::uint32_t t : shown) {
+    const Bands reach = bands_of_triangle(t);
+    for (std::uint32_t b = reach.first; b < reach.end; ++b) out.triangles[next[b]++] = t;
+  }
+  return out;
+}
+
+} // namespace
+
+std::array<double, 3> TriangleInPage::weights(double x, double y) const {
+  const double dx = x - corners[0].x, dy = y - corners[0].y;
+  std::array<double, 3> w{};
+  for (std::size_t k = 0; k < 3; ++k) w[k] = at_corner_0[k] + along_x[k] * dx + along_y[k] * dy;
+  return w;
+}
+
+std::array<double, 3> TriangleInPage::nearest_weights(double x, double y) const {
+  const std::array<double, 3> inside = weights(x, y);
+  if (inside[0] >= 0 && inside[1] >= 0 && inside[2] >= 0) return inside;
+  std::array<double, 3> best{1, 0, 0};
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const RasterPoint &a = corners[k], &b = corners[(k + 1) % 3];
+    const double ex = b.x - a.x, ey = b.y - a.y, length = ex * ex + ey * ey;
+    const double t = length > 0 ? std::clamp(((x - a.x) * ex + (y - a.y) * ey) / length, 0.0, 1.0) : 0.0;
+    const double dx = x - (a.x + t * ex), dy = y - (a.y + t * ey), distance = dx * dx + dy * dy;
+    if (distance >= least) continue;
+    least = distance;
+    best = {};
+    best[k] = 1 - t;
+    best[(k + 1) % 3] = t;
+  }
+  return best;
+}
+
+TexelMap::TexelMap(const PageMesh& mesh, std::uint32_t width, std::uint32_t height, mesh::ThreadPool& pool)
+    : mesh_(mesh), width_(width), height_(height), triangle_(std::size_t{width} * height, nothing),
+      covered_(triangle_.size(), 0) {
+  cover(mesh, pool);
+  covered_texels_ = static_cast<std::uint64_t>(std::count(covered_.begin(), covered_.end(), std::uint8_t{1}));
+  spread();
+}
+
+TriangleInPage TexelMap::place(std::uint32_t triangle) const {
+  TriangleInPage out;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec2f& uv = mesh_.uv[mesh_.triangles[triangle][k]];
+    out.corners[k] = {double{uv.x} * width_, double{uv.y} * height_};
+  }
+  const auto& p = out.corners;
+  const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
+  out.at_corner_0 = {1, 0, 0};
+  if (area == 0) return out; // it covers no texel; its first corner stands for it
+  for (std::size_t k = 0; k < 3; ++k) {
+    const RasterPoint &a = p[(k + 1) % 3], &b = p[(k + 2) % 3];
+    out.along_x[k] = -(b.y - a.y) / area;
+    out.along_y[k] = (b.x - a.x) / area;
+  }
+  return out;
+}
+
+void TexelMap::cover(const PageMesh& mesh, mesh::ThreadPool& pool) {
+  const auto corners = [&](std::uint32_t t) { return place(t).corners; };
+  const std::uint32_t bands = (height_ + band_rows - 1) / band_rows;
+  const Buckets buckets =
+      sort_into_bands(mesh.shown, bands, [&](std::uint32_t t) { return bands_of(corners(t), height_); });
+  pool.for_blocks(bands, 1, [&](std::size_t band, std::size_t) {
+    const auto top = static_cast<std::uint32_t>(band) * band_rows;
+    const std::uint32_t rows = std::min(band_rows, height_ - top);
+    for (std::uint32_t i = buckets.first[band]; i < buckets.first[band + 1]; ++i) {
+      const std::uint32_t t = buckets.triangles[i];
+      std::array<RasterPoint, 3> p = corners(t);
+      for (RasterPoint& corner : p) corner.y -= top; // exact: both are multiples of the smaller one's last place
+      rasterize(p, width_, rows, [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>&) {
+        const std::size_t texel = std::size_t{top + y} * width_ + x;
+        triangle_[texel] = t;
+        covered_[texel] = 1;
+      });
+    }
+  });
+}
+
+// Breadth first from the charts' borders, ring by ring: each ring looks only at the rings before it, in the order of the
+// page.
+void TexelMap::spread() {
+  std::vector<std::size_t> ring;
+  const auto for_neighbours = [&](std::size_t texel, auto visit) {
+    const std::size_t x = texel % width_, y = texel / width_;
+    if (y > 0) visit(texel - width_);
+    if (x > 0) visit(texel - 1);
+    if (x + 1 < width_) visit(texel + 1);
+    if (y + 1 < height_) visit(texel + width_);
+  };
+  for (std::size_t i = 0; i < triangle_.size(); ++i) {
+    if (covered_[i] == 0) continue;
+    bool at_border = false;
+    for_neighbours(i, [&](std::size_t j) { at_border = at_border || covered_[j] == 0; });
+    if (at_border) ring.push_back(i);
+  }
+  std::vector<std::size_t> next;
+  while (!ring.empty()) {
+    next.clear();
+    for (const std::size_t i : ring) {
+      for_neighbours(i, [&](std::size_t j) {
+        if (triangle_[j] != nothing) return;
+        triangle_[j] = triangle_[i];
+        next.push_back(j);
+      });
+    }
+    ring.swap(next);
+  }
+}
+
+} // namespace orbis::texture
