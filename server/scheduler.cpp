@@ -189,6 +189,7 @@ std::optional<Job> Scheduler::answer_from_cache(StoredJob stored) {
   stored.job.input.triangles = earlier->job.input.triangles;
   stored.job.result = earlier->job.result;
   stored.job.partial = earlier->job.partial;
+  stored.job.maps = earlier->job.maps;
   stored.job.cached = true;
   stored.job.started = stored.job.created;
   finish(stored, JobState::succeeded);
