@@ -55,7 +55,7 @@ struct ComponentReport {
 };
 
 struct Report {
-  std::string format; // "glb", "gltf", "draco"
+  std::string format; // "glb", "gltf", "draco", "obj", "ply" or "stl"
   Options options;
   std::uint64_t input_triangles = 0, input_vertices = 0;
   mesh::Topology topology;

@@ -67,7 +67,7 @@ TEST_CASE("a raw Draco mesh reads to the bit, with glTF's names") {
       attribute("_GENERIC_0", ComponentType::i16, 1,
                 bytes_of({std::int16_t{-5}, std::int16_t{5}, std::int16_t{32767}, std::int16_t{-32768}}))};
   const Asset asset = read_asset(encode_draco(triangles, attributes), {}, Limits{});
-  CHECK(asset.format == Format::draco);
+  CHECK(asset.format == ModelFormat::draco);
   CHECK(asset.notes.empty());
   REQUIRE(asset.primitives.size() == 1);
   const Primitive& primitive = asset.primitives[0];
