@@ -86,10 +86,11 @@ TEST_CASE("a raw Draco mesh reads to the bit, with glTF's names") {
 TEST_CASE("a raw Draco mesh becomes a document with one scene, node, mesh and material") {
   const Asset asset = read_asset(encode_draco(triangles, std::vector{positions()}), {}, Limits{});
   const Primitive& p = asset.primitives.at(0);
-  NewPrimitive out{p.indices, p.attributes, {}, 0};
+  NewPrimitive out{p.indices, p.attributes, {}, 0, {}, false};
   out.attributes.push_back(attribute("TEXCOORD_0", ComponentType::f32, 2, test::Bytes(32)));
   out.textures[TextureSlot::base_color] = 0;
-  const Bytes glb = write_asset(asset, std::vector{out}, std::vector{NewImage{test::tiny_png(), "image/png"}}, "{}", Compression::none);
+  const Bytes glb = write_asset(asset, std::vector{out}, std::vector{NewImage{test::tiny_png(), "image/png"}}, "{}",
+                                Compression::none);
   const auto text = split_glb(glb).json;
   const Json json =
       Json::parse(reinterpret_cast<const char*>(text.data()), reinterpret_cast<const char*>(text.data()) + text.size());

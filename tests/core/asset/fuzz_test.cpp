@@ -58,7 +58,7 @@ test::Bytes compressed() {
   const GltfBuilder b = full();
   const Asset asset = read_asset(b.glb(), {}, Limits{});
   const Primitive& p = asset.primitives.at(0);
-  return write_asset(asset, std::vector{NewPrimitive{p.indices, p.attributes, p.targets, 0}},
+  return write_asset(asset, std::vector{NewPrimitive{p.indices, p.attributes, p.targets, 0, {}, false}},
                      std::vector{NewImage{test::tiny_png(), "image/png"}}, "{}", Compression::draco);
 }
 
@@ -132,7 +132,8 @@ bool survives(const test::Bytes& bytes) {
             {"TEXCOORD_0", ComponentType::f32, false, 2, Bytes(p.vertex_count() * 8)});
       }
     }
-    const Bytes out = write_asset(asset, primitives, std::vector{NewImage{test::tiny_png(), "image/png"}}, "{}", Compression::none);
+    const Bytes out =
+        write_asset(asset, primitives, std::vector{NewImage{test::tiny_png(), "image/png"}}, "{}", Compression::none);
     (void)read_asset(out, {}, Limits{});
     return true;
   } catch (const Error& error) {
