@@ -13,7 +13,11 @@ namespace orbis::test {
 inline std::vector<asset::NewPrimitive> unchanged(const asset::Asset& asset) {
   std::vector<asset::NewPrimitive> out;
   for (const asset::Primitive& p : asset.primitives) {
-    asset::NewPrimitive primitive{p.indices, p.attributes, p.targets, 0, {{asset::TextureSlot::base_color, 0}}, false};
+    asset::NewPrimitive primitive;
+    primitive.indices = p.indices;
+    primitive.attributes = p.attributes;
+    primitive.targets = p.targets;
+    primitive.textures[asset::TextureSlot::base_color] = 0;
     while (p.find("TEXCOORD_" + std::to_string(primitive.atlas_texcoord))) ++primitive.atlas_texcoord;
     const std::string name = "TEXCOORD_" + std::to_string(primitive.atlas_texcoord);
     primitive.attributes.push_back({name, asset::ComponentType::f32, false, 2, Bytes(p.vertex_count() * 8)});
@@ -23,8 +27,8 @@ inline std::vector<asset::NewPrimitive> unchanged(const asset::Asset& asset) {
 }
 
 inline Bytes write_unchanged(const asset::Asset& asset, Compression compression = Compression::none) {
-  const std::vector<asset::NewImage> atlas{{tiny_png(), "image/png"}};
-  return asset::write_asset(asset, unchanged(asset), atlas, "{}", compression);
+  const std::vector<asset::NewImage> images{{tiny_png(), "image/png"}};
+  return asset::write_asset(asset, unchanged(asset), images, "{}", compression);
 }
 
 } // namespace orbis::test
