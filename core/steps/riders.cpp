@@ -46,6 +46,8 @@ private:
   void ride_on_twin(const Rider& rider) {
     const bool same_vertices =
         rider.corners == surface_.corners[rider.twin] && rider.primitive == surface_.primitive_of[rider.twin];
+    delivery_.primitives[rider.primitive].atlas_page =
+        delivery_.primitives[surface_.primitive_of[rider.twin]].atlas_page;
     const auto [begin, end] = std::equal_range(cut_.parent.begin(), cut_.parent.end(), rider.twin);
     for (auto piece = begin; piece != end; ++piece) {
       mesh::Triangle vertices{};

@@ -8,6 +8,7 @@
 
 #include "core/mesh/disjoint_sets.h"
 #include "core/sphere/snap.h"
+#include "core/steps/leave_out.h"
 #include "core/texture/flat_charts.h"
 #include "core/texture/place.h"
 #include "core/texture/quality.h"
@@ -124,46 +125,95 @@ void describe(const Surface& surface, const texture::CutMesh& cut, Report& repor
   report.atlas.added_vertices = cut.points - surface.mesh.positions.size();
 }
 
+Note problem_of(const Component& c, const Error& e) {
+  return {"not-deliverable", e.message(), "/meshes/" + std::to_string(c.mesh)};
+}
+
+class Atlas {
+public:
+  Atlas(const asset::Asset& asset, const Surface& surface, std::span<const Vec3d> points, const Options& options)
+      : surface_(surface), texture_size_(options.texture_size) {
+    const std::vector<std::uint32_t> pages = pages_of(asset, surface, options.atlas);
+    components_.reserve(surface.components.size());
+    for (std::size_t i = 0; i < surface.components.size(); ++i) {
+      const Component& c = surface.components[i];
+      components_.emplace_back(surface, c, points.subspan(c.first_vertex, c.vertices), pages[i]);
+    }
+  }
+
+  // The components that no turn helps; where there are none, cut() is complete.
+  Problems make(Progress& progress) {
+    std::vector<std::uint32_t> all(components_.size());
+    std::iota(all.begin(), all.end(), 0U);
+    Problems problems = next(all, progress);
+    while (problems.empty()) {
+      std::vector<texture::AtlasComponent> inputs;
+      std::vector<texture::FlatCharts> charts;
+      for (const ComponentCharts& c : components_) {
+        inputs.push_back(c.atlas_component());
+        charts.push_back(c.charts());
+      }
+      placed_ = texture::place(inputs, charts, texture_size_);
+      if (placed_.folded.empty()) break;
+      NoProgress quiet;
+      problems = next(placed_.folded, quiet);
+    }
+    return problems;
+  }
+
+  CutSphere take(Report& report) {
+    CutSphere out{{}, std::move(placed_.mesh)};
+    for (const ComponentCharts& c : components_) {
+      out.points.insert(out.points.end(), c.sphere().begin(), c.sphere().end());
+      if (c.turns() == 0) continue;
+      report.notes.push_back({"turned-sphere",
+                              "the sphere was turned by " + std::to_string(c.turns() * turn_angle) +
+                                  " radians to keep every triangle resolvable",
+                              "/meshes/" + std::to_string(c.component().mesh)});
+    }
+    describe(surface_, out.cut, report);
+    return out;
+  }
+
+private:
+  // Lays components flat, or turns them further where they are flat already.
+  Problems next(std::span<const std::uint32_t> which, Progress& progress) {
+    Problems problems;
+    NoProgress quiet;
+    for (std::size_t i = 0; i < which.size(); ++i) {
+      progress.check();
+      progress.report(Stage::atlas, i, which.size());
+      try {
+        components_[which[i]].next(quiet);
+      } catch (const Error& e) {
+        if (e.code() != ErrorCode::not_certified) throw;
+        problems.emplace(which[i], problem_of(components_[which[i]].component(), e));
+      }
+    }
+    return problems;
+  }
+
+  const Surface& surface_;
+  std::uint32_t texture_size_;
+  std::vector<ComponentCharts> components_;
+  texture::Placed placed_;
+};
+
 } // namespace
 
-CutSphere snap_and_cut(const asset::Asset& asset, const Surface& surface, std::span<const Vec3d> points,
-                       const Options& options, Progress& progress, Report& report) {
-  const std::vector<std::uint32_t> pages = pages_of(asset, surface, options.atlas);
-  std::vector<ComponentCharts> components;
-  components.reserve(surface.components.size());
+CutSphere snap_and_cut(const asset::Asset& asset, Surface& surface, std::vector<Vec3d>& points, const Options& options,
+                       Progress& progress, Report& report) {
   NoProgress quiet;
-  for (std::size_t i = 0; i < surface.components.size(); ++i) {
-    const Component& c = surface.components[i];
+  for (bool first = true;; first = false) {
     progress.check();
-    progress.report(Stage::atlas, i, surface.components.size());
-    components.emplace_back(surface, c, points.subspan(c.first_vertex, c.vertices), pages[i]).next(quiet);
-  }
-
-  texture::Placed placed;
-  for (;;) {
-    std::vector<texture::AtlasComponent> inputs;
-    std::vector<texture::FlatCharts> charts;
-    for (const ComponentCharts& c : components) {
-      inputs.push_back(c.atlas_component());
-      charts.push_back(c.charts());
+    Atlas atlas(asset, surface, points, options);
+    const Problems problems = atlas.make(first ? progress : quiet);
+    if (problems.empty()) {
+      progress.report(Stage::atlas, surface.components.size(), surface.components.size());
+      return atlas.take(report);
     }
-    placed = texture::place(inputs, charts, options.texture_size);
-    if (placed.folded.empty()) break;
-    for (const std::uint32_t i : placed.folded) components[i].next(quiet);
+    leave_out(problems, surface, points, report);
   }
-
-  CutSphere out{{}, std::move(placed.mesh)};
-  for (const ComponentCharts& c : components) {
-    out.points.insert(out.points.end(), c.sphere().begin(), c.sphere().end());
-    if (c.turns() == 0) continue;
-    report.notes.push_back({"turned-sphere",
-                            "the sphere was turned by " + std::to_string(c.turns() * turn_angle) +
-                                " radians to keep every triangle resolvable",
-                            "/meshes/" + std::to_string(c.component().mesh)});
-  }
-  describe(surface, out.cut, report);
-  progress.report(Stage::atlas, surface.components.size(), surface.components.size());
-  return out;
 }
 
 } // namespace orbis

@@ -18,9 +18,10 @@ struct CutSphere {
 
 // Snaps each component's points to the grid, cuts it into charts and packs them all into pages, by options.atlas and
 // options.texture_size. Where rounding folds a triangle or a piece beyond repair, that component's sphere is turned a
-// little against grid and cube and tried again, a few times, always in the same way. Fills report.atlas but for its
-// source. Throws Error{not_certified} if no turn helps.
-[[nodiscard]] CutSphere snap_and_cut(const asset::Asset& asset, const Surface& surface, std::span<const Vec3d> points,
+// little against grid and cube and tried again, a few times, always in the same way; if no turn helps, the component is
+// left out of the surface, as leave_out says. points: one per vertex of the surface. Fills report.atlas but for its
+// source.
+[[nodiscard]] CutSphere snap_and_cut(const asset::Asset& asset, Surface& surface, std::vector<Vec3d>& points,
                                      const Options& options, Progress& progress, Report& report);
 
 } // namespace orbis
