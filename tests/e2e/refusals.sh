@@ -86,7 +86,7 @@ test_a_method_that_does_not_fit_is_a_405_which_says_what_does() {
 }
 
 test_a_media_type_that_is_no_model_is_a_415() {
-  request POST /v1/jobs --header 'Content-Type: text/plain' --data-binary @"$models/egg.glb"
+  request POST /v1/jobs --header 'Content-Type: text/html' --data-binary @"$models/egg.glb"
   expect_problem 415 unsupported-media-type
 }
 
