@@ -43,7 +43,7 @@ void check_extensions(const JsonReader& reader, const Json& document) {
 
 void check_shape(const JsonReader& reader, const Json& document) {
   for (const auto* key : {"scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "animations", "skins",
-                         "materials", "textures", "images", "samplers", "cameras"}) {
+                          "materials", "textures", "images", "samplers", "cameras"}) {
     const Json* items = reader.array(document, key);
     if (!items) continue;
     for (const Json& item : *items) {

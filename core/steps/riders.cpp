@@ -46,8 +46,7 @@ private:
   void ride_on_twin(const Rider& rider) {
     const bool same_vertices =
         rider.corners == surface_.corners[rider.twin] && rider.primitive == surface_.primitive_of[rider.twin];
-    delivery_.primitives[rider.primitive].atlas_page =
-        delivery_.primitives[surface_.primitive_of[rider.twin]].atlas_page;
+    delivery_.page_of[rider.primitive] = delivery_.page_of[surface_.primitive_of[rider.twin]];
     const auto [begin, end] = std::equal_range(cut_.parent.begin(), cut_.parent.end(), rider.twin);
     for (auto piece = begin; piece != end; ++piece) {
       mesh::Triangle vertices{};
