@@ -140,8 +140,8 @@ Json level_json(const Report::Level& level) {
 Json vector_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 Json map_json(const Report::BakedMap& m) {
-  Json json{{"name", m.name}, {"page", m.page}, {"width", m.width}, {"height", m.height}, {"bits", m.bits},
-            {"bytes", m.bytes}};
+  Json json{{"name", m.name},     {"page", m.page}, {"width", m.width},
+            {"height", m.height}, {"bits", m.bits}, {"bytes", m.bytes}};
   if (m.range) {
     json["offset"] = vector_json(m.range->offset);
     json["scale"] = vector_json(m.range->scale);

@@ -77,7 +77,7 @@ struct Options {
   std::uint32_t normal_bits = 8; // 8 or 16 a channel, of the normal maps
   Compression compression = Compression::none;
   std::vector<LodTarget> lods; // levels of detail beside the full surface, from fine to coarse
-  std::uint32_t threads = 0; // 0: as many as the machine has; the result does not depend on it
+  std::uint32_t threads = 0;   // 0: as many as the machine has; the result does not depend on it
 };
 
 // One row per option: its name, the values it takes (for people), its default, and what it does.

@@ -13,7 +13,7 @@ namespace orbis {
 enum class Stage { decode, topology, simplify, refine, optimise, atlas, levels, bake, encode, certify };
 
 inline constexpr std::array<std::string_view, 10> stage_names{"decode", "topology", "simplify", "refine", "optimise",
-                                                             "atlas",  "levels",   "bake",   "encode", "certify"};
+                                                              "atlas",  "levels",   "bake",     "encode", "certify"};
 inline constexpr std::size_t stage_count = stage_names.size();
 
 constexpr std::string_view name_of(Stage s) { return stage_names[static_cast<std::size_t>(s)]; }

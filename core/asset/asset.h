@@ -63,11 +63,11 @@ inline constexpr std::size_t texture_slots = 5;
 
 // A texture of a primitive's material, ready to be sampled.
 struct MaterialTexture {
-  std::span<const std::byte> image; // PNG, JPEG or WebP as in the input, for as long as the asset lives
-  std::size_t image_number = 0;     // in the document: equal numbers, equal images
-  std::string uv;                   // the attribute that samples it, e.g. "TEXCOORD_0"
+  std::span<const std::byte> image;   // PNG, JPEG or WebP as in the input, for as long as the asset lives
+  std::size_t image_number = 0;       // in the document: equal numbers, equal images
+  std::string uv;                     // the attribute that samples it, e.g. "TEXCOORD_0"
   int wrap_s = 10497, wrap_t = 10497; // glTF codes: 33071 clamp, 33648 mirror, 10497 repeat
-  bool nearest = false;             // magnified without interpolation
+  bool nearest = false;               // magnified without interpolation
   // KHR_texture_transform as a 2x3 matrix, row-major: u' = m0 u + m1 v + m2, v' = m3 u + m4 v + m5
   std::array<float, 6> transform{1, 0, 0, 0, 1, 0};
   float scale = 1; // normalTexture.scale

@@ -20,8 +20,8 @@ namespace orbis::asset {
 
 // Deterministic: same image, same bytes, on any number of threads (0: as many as the machine has).
 //
-// PNG keeps alpha and 16 bits. JPEG drops alpha (quality 1 to 100, 4:4:4 so that charts do not bleed). WebP keeps alpha;
-// it is lossy with the given quality, or lossless where that is absent, and takes up to 16383 texels a side.
+// PNG keeps alpha and 16 bits. JPEG drops alpha (quality 1 to 100, 4:4:4 so that charts do not bleed). WebP keeps
+// alpha; it is lossy with the given quality, or lossless where that is absent, and takes up to 16383 texels a side.
 [[nodiscard]] std::vector<std::byte> encode_png(const texture::Image& image,
                                                 texture::Encoding encoding = texture::Encoding::srgb,
                                                 std::uint32_t threads = 1);

@@ -1,5 +1,6 @@
-// PNG files read through libpng (png_encoder.cpp writes them). It reports errors by longjmp, which must not cross C++ objects with destructors: all that is
-// allocated lives in the caller's structs, and the functions that libpng jumps out of hold only plain values.
+// PNG files read through libpng (png_encoder.cpp writes them). It reports errors by longjmp, which must not cross C++
+// objects with destructors: all that is allocated lives in the caller's structs, and the functions that libpng jumps
+// out of hold only plain values.
 #include <png.h>
 
 #include <csetjmp>

@@ -31,9 +31,9 @@ struct AtlasUser {
   AtlasLook look;
 };
 
-// Gives every user a material with its look: its own, changed in place, where nothing else uses that one otherwise, else
-// a copy; a new one (named after the mesh, dielectric, roughness 0.8) where it has none. Other textures stay
-// as they are. A normal map that is replaced has scale 1. The mappings of KHR_materials_variants follow where they name
+// Gives every user a material with its look: its own, changed in place, where nothing else uses that one otherwise,
+// else a copy; a new one (named after the mesh, dielectric, roughness 0.8) where it has none. Other textures stay as
+// they are. A normal map that is replaced has scale 1. The mappings of KHR_materials_variants follow where they name
 // the primitive's own material.
 void assign_atlas(Json& document, const std::vector<AtlasUser>& users);
 

@@ -1,5 +1,5 @@
-// PNG, written here so that several threads can share the work: bands of rows are filtered and compressed by themselves,
-// and their deflate streams are joined (RFC 1950, 1951; a band ends on a byte with an empty stored block).
+// PNG, written here so that several threads can share the work: bands of rows are filtered and compressed by
+// themselves, and their deflate streams are joined (RFC 1950, 1951; a band ends on a byte with an empty stored block).
 //
 // Filters: per row whichever of Sub, Up and Paeth leaves the smallest sum of magnitudes (the PNG specification's own
 // heuristic). Compression: run lengths and Huffman codes only. On photographs filtered that way this takes a third of

@@ -250,7 +250,8 @@ Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, 
     if (primitives[i].indices.empty()) continue;
     check_new_primitive(primitives[i], images.size());
     replace_primitive(out, old, primitives[i], compression);
-    if (!primitives[i].textures.empty()) users.push_back({old.mesh, old.primitive, look_of(primitives[i], first_texture)});
+    if (!primitives[i].textures.empty())
+      users.push_back({old.mesh, old.primitive, look_of(primitives[i], first_texture)});
   }
   if (!users.empty()) assign_atlas(out.json, users);
   for (const NewLevel& level : levels)

@@ -51,7 +51,8 @@ texture::Box box_of(const std::vector<Vec3f>& positions) {
   texture::Box box{Vec3d(positions.front()), Vec3d(positions.front())};
   for (const Vec3f& p : positions) {
     box.low = {std::min(box.low.x, double{p.x}), std::min(box.low.y, double{p.y}), std::min(box.low.z, double{p.z})};
-    box.high = {std::max(box.high.x, double{p.x}), std::max(box.high.y, double{p.y}), std::max(box.high.z, double{p.z})};
+    box.high = {std::max(box.high.x, double{p.x}), std::max(box.high.y, double{p.y}),
+                std::max(box.high.z, double{p.z})};
   }
   return box;
 }
@@ -70,9 +71,11 @@ private:
 class Baker {
 public:
   Baker(const Request& request, const Limits& limits, const asset::Asset& asset, const Surface& surface,
-        const texture::CutMesh& cut, Delivery& delivery, std::span<DetailLevel> levels, Progress& progress, Report& report)
+        const texture::CutMesh& cut, Delivery& delivery, std::span<DetailLevel> levels, Progress& progress,
+        Report& report)
       : request_(request), limits_(limits), asset_(asset), surface_(surface), cut_(cut), delivery_(delivery),
-        levels_(levels), progress_(progress), report_(report), pool_(request.options.threads), values_(asset, surface, cut, pool_) {
+        levels_(levels), progress_(progress), report_(report), pool_(request.options.threads),
+        values_(asset, surface, cut, pool_) {
     for (std::size_t t = 0; t < cut.triangles.size(); ++t) primitive_of_.push_back(values_.primitive(t));
     for (const texture::CutVertex& v : cut.vertices) uv_.push_back(v.uv);
   }
@@ -152,8 +155,8 @@ private:
     if (!wants(map)) return SlotTextures(asset_.primitives.size());
     SlotTextures textures = textures_of(asset_, delivery_, slot, report_);
     if (!any(textures) && options().maps.names(map)) {
-      report_.notes.push_back({"map-not-baked", "no material has a texture that the map could be baked from",
-                               std::string(name_of(map))});
+      report_.notes.push_back(
+          {"map-not-baked", "no material has a texture that the map could be baked from", std::string(name_of(map))});
     }
     return textures;
   }
@@ -327,7 +330,8 @@ private:
   }
 
   std::uint32_t add_normals(const std::string& name, const texture::Image16& image, bool shown) {
-    if (options().normal_bits == 16) return add(encode_map(image, named(name), options()), image.width, image.height, 16, shown);
+    if (options().normal_bits == 16)
+      return add(encode_map(image, named(name), options()), image.width, image.height, 16, shown);
     const Image rounded = texture::to_8_bits(image);
     return add(encode_map(rounded, MapKind::directions, named(name), options()), image.width, image.height, 8, shown);
   }
@@ -338,7 +342,8 @@ private:
     constexpr double most_texels = 1U << 17U;
     const double texels = double{map_->width()} * map_->height() * static_cast<double>(cut_.pages.size());
     const auto step = static_cast<std::uint32_t>(std::max(std::ceil(std::sqrt(texels / most_texels)), 1.0));
-    const texture::TexelMap map(page_mesh(), std::max(map_->width() / step, 1U), std::max(map_->height() / step, 1U), pool_);
+    const texture::TexelMap map(page_mesh(), std::max(map_->width() / step, 1U), std::max(map_->height() / step, 1U),
+                                pool_);
     if (!trees_) trees_ = occlusion_trees(surface_, cut_);
     const Image image = texture::bake_occlusion(map, values_.positions(), values_.normals(),
                                                 {trees_->trees, trees_->tree_of}, trees_->offset, pool_);

@@ -37,7 +37,8 @@ std::array<double, 3> CornerValues::weights_in_parent(std::size_t t, std::size_t
   const texture::CutVertex& v = cut_.vertices[cut_.triangles[t][k]];
   const std::uint32_t parent = cut_.parent[t];
   if (v.triangle == parent) return v.barycentric;
-  // A point on an edge or at a corner, described from the neighbour's side: the corners that it has a part of are shared.
+  // A point on an edge or at a corner, described from the neighbour's side: the corners that it has a part of are
+  // shared.
   std::array<double, 3> out{};
   const mesh::Triangle &here = surface_.mesh.triangles[parent], &there = surface_.mesh.triangles[v.triangle];
   for (std::size_t j = 0; j < 3; ++j) {
@@ -106,13 +107,14 @@ std::vector<std::array<Tangent, 3>> CornerValues::tangents(std::span<const Norma
   const auto given = [&](std::uint32_t p) {
     const asset::Attribute* tangent = asset_.primitives[p].find("TANGENT");
     return tangent != nullptr && tangent->components == 4 && asset_.primitives[p].find("NORMAL") != nullptr ? tangent
-                                                                                                         : nullptr;
+                                                                                                            : nullptr;
   };
   auto out = gather<std::array<Tangent, 3>>([&](std::size_t t, std::array<Tangent, 3>& corners) {
     const asset::Attribute* attribute = given(primitive(t));
     for (std::size_t k = 0; attribute != nullptr && k < 3; ++k) {
       const auto v = at<4>(*attribute, t, k);
-      corners[k] = {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), v[3] < 0 ? -1.0F : 1.0F};
+      corners[k] = {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]),
+                    v[3] < 0 ? -1.0F : 1.0F};
     }
   });
   for (std::uint32_t p = 0; p < uv_of.size(); ++p) {
@@ -138,7 +140,8 @@ void CornerValues::add_mikktspace(std::uint32_t p, const NormalUv& uv, std::vect
     const Vec3f flat = unit(cross(b - a, c - a));
     for (const std::uint32_t v : corner) {
       at_position.push_back(positions[v]);
-      at_normal.push_back(normal == nullptr ? flat : vector_of({normal->get(v, 0), normal->get(v, 1), normal->get(v, 2)}));
+      at_normal.push_back(normal == nullptr ? flat
+                                            : vector_of({normal->get(v, 0), normal->get(v, 1), normal->get(v, 2)}));
       const double x = uv.uv->get(v, 0), y = uv.uv->get(v, 1);
       const auto& m = uv.transform;
       at_uv.push_back({static_cast<float>(m[0] * x + m[1] * y + m[2]), static_cast<float>(m[3] * x + m[4] * y + m[5])});

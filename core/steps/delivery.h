@@ -23,7 +23,7 @@ struct Delivery {
   std::vector<std::vector<VertexSource>> sources; // where their vertices come from
   std::vector<OutputVertex> of_cut_vertex;        // cut vertex -> output vertex
   std::vector<OutputVertex> of_surface_vertex; // vertex of the surface -> one of its copies in the output; not of caps
-  std::vector<std::uint32_t> page_of; // primitive -> the page of the atlas that its triangles are on
+  std::vector<std::uint32_t> page_of;          // primitive -> the page of the atlas that its triangles are on
   std::vector<std::vector<std::uint32_t>>
       component_of; // primitive -> its output triangles' components; no_primitive for riders
 };

@@ -13,8 +13,8 @@ namespace orbis {
 enum class MapKind { color, data, directions };
 
 // As options.texture_format asks for: colours and data as PNG, JPEG or WebP. Directions (normal maps) are stored
-// without loss, and so is what has alpha where the format is JPEG, which has none: PNG, or lossless WebP. WebP is lossless
-// for data too, since its lossy form halves the resolution of two of three channels.
+// without loss, and so is what has alpha where the format is JPEG, which has none: PNG, or lossless WebP. WebP is
+// lossless for data too, since its lossy form halves the resolution of two of three channels.
 [[nodiscard]] asset::NewImage encode_map(const texture::Image& image, MapKind kind, const std::string& name,
                                          const Options& options);
 // 16 bits: always PNG.

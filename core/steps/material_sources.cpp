@@ -8,8 +8,8 @@
 namespace orbis {
 namespace {
 
-constexpr std::array<std::string_view, asset::texture_slots> slot_names{
-    "base colour", "metallic-roughness", "occlusion", "emissive", "normal"};
+constexpr std::array<std::string_view, asset::texture_slots> slot_names{"base colour", "metallic-roughness",
+                                                                        "occlusion", "emissive", "normal"};
 
 std::string name_of_slot(asset::TextureSlot slot) { return std::string(slot_names[static_cast<std::size_t>(slot)]); }
 
@@ -46,8 +46,9 @@ SlotTextures textures_of(const asset::Asset& asset, const Delivery& delivery, as
     out[p] = asset::material_texture(asset, primitive, slot);
     if (!out[p] && asset::names_texture(asset, primitive, slot)) {
       note_kept(report,
-                "the " + name_of_slot(slot) + " texture was not baked: its image or its coordinates did not come, or "
-                "its format is not decoded here",
+                "the " + name_of_slot(slot) +
+                    " texture was not baked: its image or its coordinates did not come, or "
+                    "its format is not decoded here",
                 pointer_to(primitive));
     }
   }

@@ -26,8 +26,8 @@ using SlotTextures = std::vector<std::optional<asset::MaterialTexture>>;
 // Decoded images by their number in the document.
 using DecodedImages = std::map<std::size_t, texture::Image>;
 
-// Decodes what the textures name. A primitive whose image is in an unknown format loses its texture, with a note; so does
-// one whose image is damaged, unless that is an error (`strict`). Throws Error: malformed, too_large.
+// Decodes what the textures name. A primitive whose image is in an unknown format loses its texture, with a note; so
+// does one whose image is damaged, unless that is an error (`strict`). Throws Error: malformed, too_large.
 [[nodiscard]] DecodedImages decode(const asset::Asset& asset, const Limits& limits, bool strict, SlotTextures& textures,
                                    Report& report);
 

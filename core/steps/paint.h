@@ -17,7 +17,8 @@ namespace orbis {
 [[nodiscard]] bool may_show_own_colors(const Options& options);
 
 // "base_color", "cubemap" or "pattern": what the base colour shows. texture=auto takes the model's own colours where it
-// has any, else the test pattern. Throws Error{invalid_option} where texture=base_color is asked for and there are none.
+// has any, else the test pattern. Throws Error{invalid_option} where texture=base_color is asked for and there are
+// none.
 [[nodiscard]] std::string source_name(const Options& options, bool has_own_colors);
 
 // The images that texture=cubemap takes; none with another texture. Throws Error: missing_resource where they did not

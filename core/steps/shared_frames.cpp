@@ -41,7 +41,7 @@ SharedFrames::SharedFrames(const asset::Asset& asset, const Surface& surface, co
 
 void SharedFrames::give_to(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& mesh,
                            Delivery& delivery) const {
-  Report already_noted; // of the full surface
+  Report already_noted;                                                       // of the full surface
   add_tangent_frames(asset, surface, mesh, shared_, delivery, already_noted); // makes the attributes
   const texture::FrameField frames = field();
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {

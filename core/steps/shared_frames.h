@@ -25,7 +25,9 @@ public:
   void give_to(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& mesh,
                Delivery& delivery) const;
 
-  [[nodiscard]] texture::FrameField field() const { return {&map_, mesh_.triangles, frames_.normals, frames_.tangents}; }
+  [[nodiscard]] texture::FrameField field() const {
+    return {&map_, mesh_.triangles, frames_.normals, frames_.tangents};
+  }
 
 private:
   std::vector<bool> shared_;

@@ -13,16 +13,15 @@
 namespace orbis {
 
 struct TangentFrames {
-  std::vector<Vec3f> normals;              // by cut vertex, unit, as delivered in NORMAL
-  std::vector<texture::Tangent> tangents;  // by cut vertex, as delivered in TANGENT
+  std::vector<Vec3f> normals;             // by cut vertex, unit, as delivered in NORMAL
+  std::vector<texture::Tangent> tangents; // by cut vertex, as delivered in TANGENT
 };
 
 // Gives the primitives that are `wanted` NORMAL, where they have none (smooth over the surface, by the angles of the
 // triangles around each point), and TANGENT along the atlas' texture coordinates, by MikkTSpace. Morph targets lose
 // their TANGENT, which belonged to the old ones; that is noted.
-TangentFrames add_tangent_frames(const asset::Asset& asset, const Surface& surface,
-                                               const texture::CutMesh& cut, const std::vector<bool>& wanted,
-                                               Delivery& delivery, Report& report);
+TangentFrames add_tangent_frames(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut,
+                                 const std::vector<bool>& wanted, Delivery& delivery, Report& report);
 
 // Overwrites NORMAL and TANGENT of one vertex of the output.
 void set_frame(asset::NewPrimitive& primitive, std::size_t vertex, const texture::VertexFrame& frame);

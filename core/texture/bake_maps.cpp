@@ -59,8 +59,8 @@ struct Frame {
   }
 
   [[nodiscard]] Vec3d to_space(const Vec3d& v) const { return tangent * v.x + bitangent * v.y + normal * v.z; }
-  // The inverse, brought to unit length (Cramer: interpolated vectors are not perpendicular to each other). Where they lie
-  // in one plane no colour would be right; the flat one stays.
+  // The inverse, brought to unit length (Cramer: interpolated vectors are not perpendicular to each other). Where they
+  // lie in one plane no colour would be right; the flat one stays.
   [[nodiscard]] Vec3d from_space(const Vec3d& n) const {
     const Vec3d x = cross(bitangent, normal), y = cross(normal, tangent), z = cross(tangent, bitangent);
     const double determinant = dot(tangent, x);

@@ -1,7 +1,7 @@
 // The maps of a page: what the input's textures and geometry say, texel by texel.
 //
-// All of them walk over the same texel map; their gutters come from it. Each is divided among the pool's threads by rows
-// and is the same on any number of them.
+// All of them walk over the same texel map; their gutters come from it. Each is divided among the pool's threads by
+// rows and is the same on any number of them.
 #pragma once
 
 #include <array>
@@ -33,8 +33,8 @@ struct NormalSource {
   std::span<const std::array<Vec3f, 3>> normals;    // unit, in the space of POSITION
   std::span<const std::array<Tangent, 3>> tangents; // of the input's normal maps; empty where there are none
   const TextureReader* detail = nullptr;            // the input's normal maps (linear); null where there are none
-  std::span<const float> scales;                    // normalTexture.scale by source of `detail`; 0: it has no normal map
-  std::span<const std::uint32_t> source_of;         // as the reader's
+  std::span<const float> scales;            // normalTexture.scale by source of `detail`; 0: it has no normal map
+  std::span<const std::uint32_t> source_of; // as the reader's
 };
 
 // A field of tangent frames: those of a mesh on the same page, interpolated as a renderer does. The mesh may be the
@@ -42,7 +42,7 @@ struct NormalSource {
 struct FrameField {
   const TexelMap* map = nullptr;
   std::span<const mesh::Triangle> triangles;
-  std::span<const Vec3f> normals;   // one per vertex
+  std::span<const Vec3f> normals;    // one per vertex
   std::span<const Tangent> tangents; // one per vertex
 };
 
@@ -56,8 +56,8 @@ struct VertexFrame {
                                    double y);
 
 // Normals as numbers in [0, 1], (n + 1) / 2 each: in the space of POSITION, or with `frames` in the tangent frame that
-// glTF renderers build at each pixel: N, T and B = w cross(N, T) at the vertices, interpolated, each brought back to unit
-// length, n ~ x T + y B + z N.
+// glTF renderers build at each pixel: N, T and B = w cross(N, T) at the vertices, interpolated, each brought back to
+// unit length, n ~ x T + y B + z N.
 [[nodiscard]] Image16 bake_normals(const TexelMap& map, const NormalSource& source, const FrameField* frames,
                                    mesh::ThreadPool& pool);
 

@@ -121,7 +121,8 @@ Image bake_occlusion(const TexelMap& map, std::span<const std::array<Vec3f, 3>> 
   Image image{map.width(), map.height(), 3, {}};
   image.pixels.reserve(3 * seen.size());
   for (std::uint32_t y = 0; y < map.height(); ++y) {
-    for (std::uint32_t x = 0; x < map.width(); ++x) image.pixels.insert(image.pixels.end(), 3, to_byte(smoothed(map, seen, x, y)));
+    for (std::uint32_t x = 0; x < map.width(); ++x)
+      image.pixels.insert(image.pixels.end(), 3, to_byte(smoothed(map, seen, x, y)));
   }
   return image;
 }

@@ -13,8 +13,8 @@ constexpr std::size_t deepest = 64; // halving 2^32 triangles ends long before
 Vec3f least(const Vec3f& a, const Vec3f& b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
 Vec3f most(const Vec3f& a, const Vec3f& b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
 
-// The part of a ray within one pair of parallel planes. An infinite `inverse` (a ray along them) gives infinities of the
-// right sign, or no number on a plane, which std::min and std::max here leave out.
+// The part of a ray within one pair of parallel planes. An infinite `inverse` (a ray along them) gives infinities of
+// the right sign, or no number on a plane, which std::min and std::max here leave out.
 void clip(float low, float high, float origin, float inverse, float& from, float& to) {
   const float a = (low - origin) * inverse, b = (high - origin) * inverse;
   from = std::max(from, std::min(a, b));
@@ -28,7 +28,8 @@ public:
   Builder(std::span<const Vec3f> positions, std::span<const mesh::Triangle> triangles)
       : positions_(positions), input_(triangles), order_(triangles.size()) {
     std::iota(order_.begin(), order_.end(), 0U);
-    for (const auto& [a, b, c] : triangles) centres_.push_back((positions[a] + positions[b] + positions[c]) * (1.0F / 3));
+    for (const auto& [a, b, c] : triangles)
+      centres_.push_back((positions[a] + positions[b] + positions[c]) * (1.0F / 3));
     nodes_.emplace_back();
     split(0, 0, static_cast<std::uint32_t>(triangles.size()));
   }
@@ -66,7 +67,9 @@ void RayTree::Builder::split(std::uint32_t node, std::uint32_t first, std::uint3
   if (count <= leaf_size) return;
 
   const Vec3f size = centre_high - centre_low;
-  float Vec3f::*const axis = size.x >= size.y && size.x >= size.z ? &Vec3f::x : size.y >= size.z ? &Vec3f::y : &Vec3f::z;
+  float Vec3f::*const axis = size.x >= size.y && size.x >= size.z ? &Vec3f::x
+                             : size.y >= size.z                   ? &Vec3f::y
+                                                                  : &Vec3f::z;
   const std::uint32_t half = count / 2;
   const auto begin = order_.begin() + first;
   std::nth_element(begin, begin + half, begin + count, [&](std::uint32_t a, std::uint32_t b) {

@@ -33,8 +33,8 @@ Image halved(const Image& image, Encoding encoding) {
     for (std::uint32_t x = 0; x < half.width; ++x) {
       const std::uint32_t x1 = std::min(2 * x + 1, image.width - 1), y1 = std::min(2 * y + 1, image.height - 1);
       Light sum{};
-      for (const Light& light :
-           {load(image, 2 * x, 2 * y, encoding), load(image, x1, 2 * y, encoding), load(image, 2 * x, y1, encoding), load(image, x1, y1, encoding)})
+      for (const Light& light : {load(image, 2 * x, 2 * y, encoding), load(image, x1, 2 * y, encoding),
+                                 load(image, 2 * x, y1, encoding), load(image, x1, y1, encoding)})
         for (std::size_t c = 0; c < 4; ++c) sum[c] += 0.25F * light[c];
       store(sum, half, x, y, encoding);
     }

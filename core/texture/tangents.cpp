@@ -119,18 +119,21 @@ private:
       solid.push_back(triangles_[t]);
       number.push_back(t);
     }
-    const auto half_edge = [&](const mesh::EdgeSide& side) { return 3 * number[side.half_edge / 3] + side.half_edge % 3; };
-    mesh::EdgeTable(solid, vertex_count_).for_each([&](mesh::Index, mesh::Index, std::span<const mesh::EdgeSide> sides) {
-      for (std::size_t i = 0; i < sides.size(); ++i) {
-        const std::uint32_t h = half_edge(sides[i]);
-        for (std::size_t j = i + 1; j < sides.size() && neighbour_[h] == none; ++j) {
-          const std::uint32_t g = half_edge(sides[j]);
-          if (neighbour_[g] != none || start(g) == start(h)) continue;
-          neighbour_[h] = g;
-          neighbour_[g] = h;
-        }
-      }
-    });
+    const auto half_edge = [&](const mesh::EdgeSide& side) {
+      return 3 * number[side.half_edge / 3] + side.half_edge % 3;
+    };
+    mesh::EdgeTable(solid, vertex_count_)
+        .for_each([&](mesh::Index, mesh::Index, std::span<const mesh::EdgeSide> sides) {
+          for (std::size_t i = 0; i < sides.size(); ++i) {
+            const std::uint32_t h = half_edge(sides[i]);
+            for (std::size_t j = i + 1; j < sides.size() && neighbour_[h] == none; ++j) {
+              const std::uint32_t g = half_edge(sides[j]);
+              if (neighbour_[g] != none || start(g) == start(h)) continue;
+              neighbour_[h] = g;
+              neighbour_[g] = h;
+            }
+          }
+        });
   }
 
   [[nodiscard]] mesh::Index start(std::uint32_t half_edge) const { return triangles_[half_edge / 3][half_edge % 3]; }
@@ -147,7 +150,8 @@ private:
       waiting.pop_back();
       if (assigned_[corner]) continue;
       Mapping& m = mappings_[corner / 3];
-      if (m.adapts && !assigned_[corner] && !assigned_[next(corner)] && !assigned_[previous(corner)]) m.upright = upright;
+      if (m.adapts && !assigned_[corner] && !assigned_[next(corner)] && !assigned_[previous(corner)])
+        m.upright = upright;
       if (m.upright != upright) continue;
       assigned_[corner] = true;
       group.push_back(corner);
@@ -197,9 +201,9 @@ private:
   std::span<const mesh::Triangle> input_;
   std::vector<mesh::Triangle> triangles_; // with equal vertices joined
   std::size_t vertex_count_ = 0;
-  std::vector<Mapping> mappings_;         // by triangle
-  std::vector<std::uint32_t> neighbour_;  // by half-edge
-  std::vector<bool> assigned_;            // by corner
+  std::vector<Mapping> mappings_;              // by triangle
+  std::vector<std::uint32_t> neighbour_;       // by half-edge
+  std::vector<bool> assigned_;                 // by corner
   std::vector<std::uint32_t> first_of_vertex_; // joined vertex -> a corner of its first group
   std::vector<std::array<Tangent, 3>> out_;
 };

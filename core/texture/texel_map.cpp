@@ -119,8 +119,8 @@ void TexelMap::cover(const PageMesh& mesh, mesh::ThreadPool& pool) {
   });
 }
 
-// Breadth first from the charts' borders, ring by ring: each ring looks only at the rings before it, in the order of the
-// page.
+// Breadth first from the charts' borders, ring by ring: each ring looks only at the rings before it, in the order of
+// the page.
 void TexelMap::spread() {
   std::vector<std::size_t> ring;
   const auto for_neighbours = [&](std::size_t texel, auto visit) {

@@ -37,8 +37,8 @@ struct TriangleInPage {
 // One number a texel: the triangle that it shows. The weights are computed anew where they are asked for, which is
 // exact and takes a few operations, instead of being stored.
 //
-// Texels that no triangle covers, the gutters and what is left of the page, belong to the triangle that shows up next to
-// them, at its nearest point: every map then fills its gutters by itself, in its own terms (a tangent-space normal
+// Texels that no triangle covers, the gutters and what is left of the page, belong to the triangle that shows up next
+// to them, at its nearest point: every map then fills its gutters by itself, in its own terms (a tangent-space normal
 // in the frame of the chart that it borders), so that bilinear and mip-mapped reads near a chart's border
 // find the chart's own values.
 class TexelMap {
@@ -76,7 +76,8 @@ public:
           current = place(t);
           shader.triangle(t, current);
         }
-        shader.texel(x, y, covered(x, y) ? current.weights(x + 0.5, y + 0.5) : current.nearest_weights(x + 0.5, y + 0.5));
+        shader.texel(x, y,
+                     covered(x, y) ? current.weights(x + 0.5, y + 0.5) : current.nearest_weights(x + 0.5, y + 0.5));
       }
     }
   }

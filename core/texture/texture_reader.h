@@ -1,5 +1,5 @@
-// The input's textures, read for the texels of a page: through the input's texture coordinates, each texel the mean over
-// its footprint in the source image.
+// The input's textures, read for the texels of a page: through the input's texture coordinates, each texel the mean
+// over its footprint in the source image.
 #pragma once
 
 #include <array>

@@ -92,7 +92,8 @@ TEST_CASE("a job succeeds, with its files, times and triangles") {
 
 TEST_CASE("only names that stay in a job's directory are maps") {
   CHECK(server::map_of_output(server::output_of_map("normal-2.png")) == "normal-2.png");
-  for (const char* name : {"normal.png", "map-../x.png", "map-a/b.png", "map-.png.", "map-", "map-N.png", "map-a.b.png"}) {
+  for (const char* name :
+       {"normal.png", "map-../x.png", "map-a/b.png", "map-.png.", "map-", "map-N.png", "map-a.b.png"}) {
     CAPTURE(name);
     CHECK_FALSE(server::map_of_output(name).has_value());
   }

@@ -89,7 +89,8 @@ TEST_CASE("a raw Draco mesh becomes a document with one scene, node, mesh and ma
   NewPrimitive out{p.indices, p.attributes, {}, 0};
   out.attributes.push_back(attribute("TEXCOORD_0", ComponentType::f32, 2, test::Bytes(32)));
   out.textures[TextureSlot::base_color] = 0;
-  const Bytes glb = write_asset(asset, std::vector{out}, std::vector{NewImage{test::tiny_png(), "image/png"}}, "{}", Compression::none);
+  const Bytes glb = write_asset(asset, std::vector{out}, std::vector{NewImage{test::tiny_png(), "image/png"}}, "{}",
+                                Compression::none);
   const auto text = split_glb(glb).json;
   const Json json =
       Json::parse(reinterpret_cast<const char*>(text.data()), reinterpret_cast<const char*>(text.data()) + text.size());

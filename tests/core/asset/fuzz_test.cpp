@@ -132,7 +132,8 @@ bool survives(const test::Bytes& bytes) {
             {"TEXCOORD_0", ComponentType::f32, false, 2, Bytes(p.vertex_count() * 8)});
       }
     }
-    const Bytes out = write_asset(asset, primitives, std::vector{NewImage{test::tiny_png(), "image/png"}}, "{}", Compression::none);
+    const Bytes out =
+        write_asset(asset, primitives, std::vector{NewImage{test::tiny_png(), "image/png"}}, "{}", Compression::none);
     (void)read_asset(out, {}, Limits{});
     return true;
   } catch (const Error& error) {

@@ -103,13 +103,14 @@ bool has(const Json& json, std::string_view attribute) {
 
 TEST_CASE("every texture of a material moves to the atlas, in an image of its own, with its factors beside it") {
   const Result result = run(painted_sphere(), {});
-  CHECK(names_of(result) == std::vector<std::string>{"base_color.png", "occlusion_roughness_metallic.png",
-                                                     "emissive.png", "normal.png"});
+  CHECK(names_of(result) ==
+        std::vector<std::string>{"base_color.png", "occlusion_roughness_metallic.png", "emissive.png", "normal.png"});
   CHECK(color_in(map_of(result, "occlusion_roughness_metallic.png")) == std::array{120, 80, 160});
   CHECK(color_in(map_of(result, "emissive.png")) == std::array{10, 20, 30});
   const Json json = json_of(result.glb);
   const Json& material = json["materials"][0];
-  for (const char* slot : {"occlusionTexture", "emissiveTexture", "normalTexture"}) CHECK(material[slot]["texCoord"] == 1);
+  for (const char* slot : {"occlusionTexture", "emissiveTexture", "normalTexture"})
+    CHECK(material[slot]["texCoord"] == 1);
   const Json& pbr = material["pbrMetallicRoughness"];
   CHECK(pbr["metallicRoughnessTexture"] == material["occlusionTexture"]);
   CHECK(pbr["baseColorFactor"] == Json{1, 0.5, 0.5, 1});
@@ -200,8 +201,8 @@ TEST_CASE("without normals a surface is flat, and its normal map says so on smoo
   CHECK(has(json_of(result.glb), "NORMAL"));
   CHECK(has(json_of(result.glb), "TANGENT"));
   const texture::Image normals = map_of(result, "normal.png"), object = map_of(result, "object_normal.png");
-  // The triangles' own normals lean away from the smooth ones by up to half the angle between two of them, and there are
-  // as many as triangles.
+  // The triangles' own normals lean away from the smooth ones by up to half the angle between two of them, and there
+  // are as many as triangles.
   int most = 0;
   std::set<std::array<int, 3>> flat;
   for (std::size_t i = 0; i < normals.pixels.size(); i += 3) {
@@ -248,7 +249,8 @@ TEST_CASE("images are stored in the format that was asked for, normal maps alway
 TEST_CASE("all maps are the same bytes on any number of threads") {
   const auto maps_on = [](const char* threads) {
     std::vector<std::vector<std::byte>> bytes;
-    for (const MapFile& map : run(painted_sphere(), {{"maps", "all"}, {"threads", threads}}).maps) bytes.push_back(map.bytes);
+    for (const MapFile& map : run(painted_sphere(), {{"maps", "all"}, {"threads", threads}}).maps)
+      bytes.push_back(map.bytes);
     return bytes;
   };
   const auto once = maps_on("1");

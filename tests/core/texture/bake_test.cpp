@@ -135,6 +135,5 @@ TEST_CASE("baking twice gives the same bytes, and stops when it is asked to") {
   CHECK_THROWS_AS((void)bake_cube_map(cut_mesh, 0, std::span(&image, 1), canceled), Error);
   const std::vector<GridPoint> grid = mesh.grid();
   const std::vector<Vec3f> positions(grid.size());
-  CHECK_THROWS_AS((void)make_atlas({mesh.triangles, mesh.triangles, grid, positions, 1}, 64, canceled),
-                  Error);
+  CHECK_THROWS_AS((void)make_atlas({mesh.triangles, mesh.triangles, grid, positions, 1}, 64, canceled), Error);
 }
