@@ -40,6 +40,20 @@ Json certificate_json(const sphere::Certificate& c) {
           {"degree", c.degree}};
 }
 
+Json atlas_certificate_json(const texture::AtlasCertificate& c) {
+  return {{"valid", c.valid},
+          {"triangles", c.triangles},
+          {"charts", c.charts},
+          {"off_grid", c.off_grid},
+          {"folded", c.folded},
+          {"outside", c.outside},
+          {"too_close", c.too_close},
+          {"closed_charts", c.closed_charts},
+          {"not_filled", c.not_filled},
+          {"open_charts", c.open_charts},
+          {"shared_texels", c.shared_texels}};
+}
+
 Json distortion_json(const sphere::Distortion& d) {
   return {{"quasi_conformal_mean", d.quasi_conformal_mean},
           {"quasi_conformal_p99", d.quasi_conformal_p99},
@@ -115,6 +129,12 @@ Json atlas_json(const Report::Atlas& a) {
           {"cut_triangles", a.cut_triangles},
           {"added_vertices", a.added_vertices},
           {"utilisation", a.utilisation},
+          {"seam_length", a.quality.seam_length},
+          {"texels_per_area", a.quality.texels_per_area},
+          {"density_min", a.quality.density_min},
+          {"density_p1", a.quality.density_p1},
+          {"density_median", a.quality.density_median},
+          {"l2_stretch", a.quality.l2_stretch},
           {"source", a.source}};
 }
 
@@ -197,6 +217,7 @@ Json to_json(const Report& report) {
           {"output", {{"triangles", report.output_triangles}, {"vertices", report.output_vertices}}},
           {"certificate", certificate_json(report.certificate)},
           {"cut_certificate", certificate_json(report.cut_certificate)},
+          {"atlas_certificate", atlas_certificate_json(report.atlas_certificate)},
           {"timing", to_json(timing_of(report))},
           {"notes", std::move(notes)}};
 }

@@ -6,12 +6,14 @@
 #include <map>
 
 #include "api/json.h"
+#include "core/model_format.h"
 
 namespace orbis::api {
 namespace {
 
-constexpr std::string_view accepted_types =
-    "model/gltf-binary, model/gltf+json, application/vnd.draco, application/octet-stream and multipart/form-data";
+constexpr std::string_view accepted_types = "model/gltf-binary, model/gltf+json, application/vnd.draco, model/obj, "
+                                            "application/ply, model/stl, application/zip, "
+                                            "application/octet-stream and multipart/form-data";
 constexpr std::uint64_t max_options_bytes = 64 << 10;
 
 [[noreturn]] void refuse(Refusal refusal, std::string detail) { throw Refused(refusal, std::move(detail)); }
@@ -67,17 +69,11 @@ Options parse_options(const Request& request, const Part* options_part) {
 }
 
 // A first look at the model, so that what can never be read is refused at the door. The reader decides the rest.
-void check_magic(const Part& model) {
+void check_format(const Part& model) {
   if (model.bytes == 0) refuse(Refusal::bad_request, "the model is empty");
-  const std::string head = read_spooled(model, 256);
-  const auto starts = [&](std::string_view magic) { return head.starts_with(magic); };
-  if (starts("glTF") || starts("DRACO")) return;
-  const auto first = head.find_first_not_of(starts("\xEF\xBB\xBF") ? "\xEF\xBB\xBF \t\r\n" : " \t\r\n");
-  if (first != std::string::npos && head[first] == '{') return;
-  const std::string zip = starts("PK\x03\x04") ? "zip archives are not read yet: send the .gltf as the part 'model' of "
-                                                 "multipart/form-data and each further file as a part of its own"
-                                               : "the model is neither GLB, nor glTF JSON, nor Draco";
-  throw Refused(make_problem(Error(ErrorCode::unsupported_format, zip)));
+  if (recognise(read_spooled(model, format_head_bytes), model.bytes)) return;
+  throw Refused(make_problem(
+      Error(ErrorCode::unsupported_format, "the model is none of GLB, glTF JSON, Draco, OBJ, PLY, STL and zip")));
 }
 
 } // namespace
@@ -85,19 +81,22 @@ void check_magic(const Part& model) {
 void check_media_type(const Request& request) {
   // curl --data-binary calls any body a web form unless told otherwise, so that name says as little as none: the
   // content decides.
-  static constexpr std::array<std::string_view, 7> known{"",
-                                                         "application/x-www-form-urlencoded",
-                                                         "model/gltf-binary",
-                                                         "model/gltf+json",
-                                                         "application/vnd.draco",
-                                                         "application/octet-stream",
-                                                         "multipart/form-data"};
+  static constexpr std::array<std::string_view, 14> known{"",
+                                                          "application/x-www-form-urlencoded",
+                                                          "model/gltf-binary",
+                                                          "model/gltf+json",
+                                                          "application/vnd.draco",
+                                                          "model/obj",
+                                                          "application/ply",
+                                                          "model/stl",
+                                                          "application/sla",
+                                                          "application/zip",
+                                                          "application/x-zip-compressed",
+                                                          "text/plain",
+                                                          "application/octet-stream",
+                                                          "multipart/form-data"};
   const std::string type = request.media_type();
   if (std::ranges::find(known, type) != known.end()) return;
-  if (type == "application/zip") {
-    refuse(Refusal::unsupported_media_type,
-           "zip archives are not read yet: send the .gltf and its files as parts of multipart/form-data");
-  }
   refuse(Refusal::unsupported_media_type,
          "'" + type.substr(0, 100) + "' is not accepted; accepted are " + std::string(accepted_types));
 }
@@ -129,7 +128,7 @@ Submission parse_submission(const Request& request) {
     refuse(Refusal::bad_request,
            "there is no model: send it as the body, or as the part 'model' of multipart/form-data");
   }
-  check_magic(*model);
+  check_format(*model);
   submission.model = *model;
   return submission;
 }

@@ -14,7 +14,8 @@ void check_media_type(const Request& request);
 // The model is the body, or the part "model"; all other parts are files that the model names.
 //
 // Throws Refused: bad_request (no model, two models, bad options JSON), invalid_option with one entry in `errors` for
-// each bad option, unsupported_format where the model's first bytes are none of glTF, GLB and Draco.
+// each bad option, unsupported_format where the model's first bytes are of no format that orbis reads
+// (core/model_format.h).
 [[nodiscard]] Submission parse_submission(const Request& request);
 
 } // namespace orbis::api

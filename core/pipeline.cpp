@@ -74,7 +74,7 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
                                   request.options.compression, in_asset(levels, report));
 
   clock.report(Stage::certify, 0, 1);
-  certify_file(result.glb, asset, surface, sphere.points, delivery, report);
+  certify_file(result.glb, asset, surface, sphere, delivery, report);
   certify_levels(result.glb, asset, surface, levels, report);
   clock.report(Stage::certify, 1, 1);
 

@@ -11,6 +11,8 @@
 #include "core/progress.h"
 #include "core/sphere/certificate.h"
 #include "core/sphere/distortion.h"
+#include "core/texture/atlas_certificate.h"
+#include "core/texture/quality.h"
 #include "core/vec3.h"
 
 namespace orbis {
@@ -55,7 +57,7 @@ struct ComponentReport {
 };
 
 struct Report {
-  std::string format; // "glb", "gltf", "draco"
+  std::string format; // "glb", "gltf", "draco", "obj", "ply" or "stl"
   Options options;
   std::uint64_t input_triangles = 0, input_vertices = 0;
   mesh::Topology topology;
@@ -75,7 +77,8 @@ struct Report {
     std::uint32_t gutter = 0;
     std::uint64_t charts = 0, cut_triangles = 0, added_vertices = 0;
     double utilisation = 0; // texels covered by charts / all texels
-    std::string source;     // "pattern", "cubemap", "base_color"
+    texture::AtlasQuality quality;
+    std::string source; // "pattern", "cubemap", "base_color"
   } atlas;
   // A level of detail, as measured on its delivered triangles. Lengths are in per cent of the model's diagonal.
   struct Level {
@@ -109,6 +112,7 @@ struct Report {
   std::uint64_t output_triangles = 0, output_vertices = 0;
   sphere::Certificate certificate;     // of the surface at the input's connectivity, as delivered
   sphere::Certificate cut_certificate; // of the delivered triangles, cut at the atlas' borders
+  texture::AtlasCertificate atlas_certificate;
   std::vector<StageTime> stages;
   std::uint64_t peak_rss_bytes = 0;
   std::vector<Note> notes;

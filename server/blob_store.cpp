@@ -37,6 +37,13 @@ void BlobStore::adopt(std::string_view job, std::size_t number, const api::Part&
   });
 }
 
+void BlobStore::share(std::string_view from, std::string_view to, const std::vector<std::string>& outputs) {
+  guarded("share a result", [&] {
+    fs::create_directories(directory(to));
+    for (const std::string& name : outputs) fs::create_hard_link(output_path(from, name), output_path(to, name));
+  });
+}
+
 fs::path BlobStore::input_path(std::string_view job, std::size_t number) const {
   return directory(job) / ("input-" + std::to_string(number));
 }

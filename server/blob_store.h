@@ -23,6 +23,9 @@ public:
   // Moves an uploaded part into a job's directory, as its number-th input file.
   void adopt(std::string_view job, std::size_t number, const api::Part& part);
 
+  // Gives a job the named outputs of another: the same files under a second name, each with a life of its own.
+  void share(std::string_view from, std::string_view to, const std::vector<std::string>& outputs);
+
   [[nodiscard]] std::filesystem::path input_path(std::string_view job, std::size_t number) const;
   [[nodiscard]] std::filesystem::path output_path(std::string_view job, std::string_view name) const;
   void remove(std::string_view job);

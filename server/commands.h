@@ -17,9 +17,9 @@ namespace orbis::server {
 
 struct RunArguments {
   std::filesystem::path input, output;
-  std::optional<std::filesystem::path> report, dump_stages, save_maps; // a file, two directories
-  std::vector<std::filesystem::path> attachments;                      // files, or directories of files
-  std::vector<std::pair<std::string, std::string>> options;            // by name, as set_option takes them
+  std::optional<std::filesystem::path> report, preview, dump_stages, save_maps; // two files, two directories
+  std::vector<std::filesystem::path> attachments;                               // files, or directories of files
+  std::vector<std::pair<std::string, std::string>> options;                     // by name, as set_option takes them
 };
 
 // `orbis run`: one job without a server, in a child process all the same. Returns the exit status: 0 with a result, 2

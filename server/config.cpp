@@ -32,6 +32,11 @@ std::uint64_t byte_count(std::string_view text) {
   return number(text, 1, (1ull << 50) >> shift) << shift;
 }
 
+bool on_or_off(std::string_view text) {
+  if (text != "on" && text != "off") throw BadValue{};
+  return text == "on";
+}
+
 std::vector<std::string> list(std::string_view text) {
   std::vector<std::string> items;
   while (!text.empty()) {
@@ -80,6 +85,9 @@ constexpr Setting table[] = {
     {"job_memory", "bytes (K, M, G)", "address space of a job", ORBIS_BYTES(c.scheduler.limits.memory_bytes)},
     {"job_output", "bytes (K, M, G)", "size of a job's results", ORBIS_BYTES(c.scheduler.limits.output_bytes)},
     {"ttl", "seconds", "how long results are kept", ORBIS_SECONDS(c.scheduler.time_to_live, 1, billion)},
+    {"cache", "on | off", "whether a request that was answered before is answered with that result, while it is kept",
+     [](Config& c, std::string_view t) { c.scheduler.cache = on_or_off(t); },
+     [](const Config& c) { return std::string(c.scheduler.cache ? "on" : "off"); }},
     {"drain", "seconds", "time that running jobs get when the service stops", ORBIS_SECONDS(c.drain, 0, 86'400)},
     {"keys", "key,key,…", "bearer keys that are accepted; none: no key is asked for",
      [](Config& c, std::string_view t) { c.keys = list(t); },

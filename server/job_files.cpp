@@ -17,15 +17,22 @@ constexpr std::string_view map_prefix = "map-";
 // In the order of api::JobFile.
 constexpr std::array<std::string_view, 4> result_names{"result.glb", "report.json", "atlas.png", "preview.png"};
 
-std::string fingerprint(const api::Submission& submission) {
+Json contents_of(const api::Submission& submission) {
   Json json{{"options", api::to_json(submission.options)}, {"model", submission.model.sha256}};
   for (const api::Part& part : submission.files) json["files"][part.file_name] = part.sha256;
+  return json;
+}
+
+std::string cache_key(const api::Submission& submission, std::string_view build) {
+  Json json = contents_of(submission);
+  json["options"].erase("threads"); // the result does not depend on it
+  json["build"] = build;
   return sha256_of(api::dump(json));
 }
 
 } // namespace
 
-StoredJob new_job(const api::Submission& submission, std::string id) {
+StoredJob new_job(const api::Submission& submission, std::string id, std::string_view build) {
   StoredJob stored;
   stored.job.id = std::move(id);
   stored.job.created = api::now();
@@ -34,7 +41,8 @@ StoredJob new_job(const api::Submission& submission, std::string id) {
   stored.inputs.push_back({"model", submission.model.bytes});
   for (const api::Part& part : submission.files) stored.inputs.push_back({part.file_name, part.bytes});
   stored.idempotency_key = submission.idempotency_key;
-  stored.fingerprint = fingerprint(submission);
+  stored.fingerprint = sha256_of(api::dump(contents_of(submission)));
+  stored.cache_key = cache_key(submission, build);
   return stored;
 }
 

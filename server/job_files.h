@@ -11,8 +11,9 @@
 
 namespace orbis::server {
 
-// The job that a submission asks for, queued, with a fingerprint that two requests for the same share.
-[[nodiscard]] StoredJob new_job(const api::Submission& submission, std::string id);
+// The job that a submission asks for, queued, with a fingerprint that two requests for the same share, and the cache
+// key that `build` (what tells one program from another) completes.
+[[nodiscard]] StoredJob new_job(const api::Submission& submission, std::string id, std::string_view build);
 
 // The name under which a result is stored: "result.glb", "report.json", "atlas.png", "preview.png".
 [[nodiscard]] std::string_view name_of(api::JobFile kind);

@@ -9,7 +9,7 @@ namespace {
 
 using api::Json;
 
-constexpr std::int64_t schema_version = 1;
+constexpr std::int64_t schema_version = 2;
 
 // What is searched has a column; the rest is one JSON document.
 constexpr const char* schema = R"sql(
@@ -27,14 +27,24 @@ constexpr const char* schema = R"sql(
   COMMIT;
 )sql";
 
-// Creates the tables of a new database, before the statements on them are prepared.
+// Jobs of before have no key and answer nobody.
+constexpr const char* second_schema = R"sql(
+  BEGIN;
+  ALTER TABLE jobs ADD COLUMN cache_key TEXT;
+  CREATE INDEX jobs_by_cache_key ON jobs (cache_key, id) WHERE state = 'succeeded';
+  PRAGMA user_version = 2;
+  COMMIT;
+)sql";
+
+// Creates the tables of a new database, and brings an old one up to date, before the statements on them are prepared.
 Database open_database(const std::filesystem::path& file) {
   Database database(file);
   Statement query = database.prepare("PRAGMA user_version");
   query.step();
   const std::int64_t version = query.number(0);
   query.reset();
-  if (version == 0) database.execute(schema);
+  if (version < 1) database.execute(schema);
+  if (version < 2) database.execute(second_schema);
   if (version > schema_version) {
     throw Error(ErrorCode::internal, "the job database was written by a newer version of orbis");
   }
@@ -60,6 +70,7 @@ Json document_of(const StoredJob& stored) {
           {"finished", time_json(job.finished)},
           {"expires", time_json(job.expires)},
           {"attempt", job.attempt},
+          {"cached", job.cached},
           {"version", job.version},
           {"options", api::to_json(job.options)},
           {"progress", job.progress ? api::to_json(*job.progress) : Json(nullptr)},
@@ -82,6 +93,7 @@ StoredJob stored_job(const Json& json) {
   job.finished = time_from(json.at("finished"));
   job.expires = time_from(json.at("expires"));
   json.at("attempt").get_to(job.attempt);
+  job.cached = json.value("cached", false); // the first schema had none
   json.at("version").get_to(job.version);
   job.options = api::options_from_json(json.at("options"));
   if (!json.at("progress").is_null()) job.progress = api::progress_from_json(json.at("progress"));
@@ -122,11 +134,13 @@ StoredJob read_row(const Statement& row) {
 
 JobStore::JobStore(const std::filesystem::path& file)
     : database_(open_database(file)),
-      insert_(
-          database_.prepare("INSERT INTO jobs (state, expires, document, id, idempotency_key) VALUES (?, ?, ?, ?, ?)")),
+      insert_(database_.prepare(
+          "INSERT INTO jobs (state, expires, document, id, idempotency_key, cache_key) VALUES (?, ?, ?, ?, ?, ?)")),
       update_(database_.prepare("UPDATE jobs SET state = ?, expires = ?, document = ? WHERE id = ?")),
       find_(database_.prepare(ORBIS_COLUMNS "WHERE id = ?")),
       find_by_key_(database_.prepare(ORBIS_COLUMNS "WHERE idempotency_key = ?")),
+      find_result_(
+          database_.prepare(ORBIS_COLUMNS "WHERE cache_key = ? AND state = 'succeeded' ORDER BY id DESC LIMIT 1")),
       list_(database_.prepare(ORBIS_COLUMNS "WHERE (?1 = '' OR id < ?1) AND (?2 = '' OR state = ?2) "
                                             "ORDER BY id DESC LIMIT ?3")),
       unfinished_(database_.prepare(ORBIS_COLUMNS "WHERE state IN ('queued', 'running') ORDER BY id")),
@@ -157,14 +171,19 @@ void bind_changes(Statement& statement, const StoredJob& stored) {
   statement.bind(2, api::dump(document_of(stored))).bind(3, stored.job.id);
 }
 
+void bind_key(Statement& statement, int index, const std::string& key) {
+  if (key.empty())
+    statement.bind_null(index);
+  else
+    statement.bind(index, key);
+}
+
 } // namespace
 
 void JobStore::insert(const StoredJob& stored) {
   bind_changes(insert_, stored);
-  if (stored.idempotency_key.empty())
-    insert_.bind_null(4);
-  else
-    insert_.bind(4, stored.idempotency_key);
+  bind_key(insert_, 4, stored.idempotency_key);
+  bind_key(insert_, 5, stored.cache_key);
   insert_.run();
 }
 
@@ -180,6 +199,11 @@ std::optional<StoredJob> JobStore::find(std::string_view id) {
 
 std::optional<StoredJob> JobStore::find_by_key(std::string_view idempotency_key) {
   auto jobs = rows(find_by_key_.bind(0, idempotency_key));
+  return jobs.empty() ? std::nullopt : std::optional(std::move(jobs.front()));
+}
+
+std::optional<StoredJob> JobStore::find_result(std::string_view cache_key) {
+  auto jobs = rows(find_result_.bind(0, cache_key));
   return jobs.empty() ? std::nullopt : std::optional(std::move(jobs.front()));
 }
 

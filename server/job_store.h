@@ -23,6 +23,7 @@ struct StoredJob {
   std::vector<StoredInput> inputs;
   std::string idempotency_key; // "" for none
   std::string fingerprint;     // of the request's contents: SHA-256 of options and files
+  std::string cache_key;       // of what decides the result's bytes: options, files and build; "" where nobody may ask
   std::vector<std::pair<std::string, api::JobResult>> outputs; // by name: size and digest of each file
 };
 
@@ -37,6 +38,8 @@ public:
   void update(const StoredJob& stored);
   [[nodiscard]] std::optional<StoredJob> find(std::string_view id);
   [[nodiscard]] std::optional<StoredJob> find_by_key(std::string_view idempotency_key);
+  // The newest job of that cache key that has succeeded and not expired.
+  [[nodiscard]] std::optional<StoredJob> find_result(std::string_view cache_key);
   // Newest first, from after query.cursor on, at most query.limit.
   [[nodiscard]] std::vector<StoredJob> list(const api::JobQuery& query);
   // Oldest first.
@@ -48,7 +51,7 @@ public:
 
 private:
   Database database_;
-  Statement insert_, update_, find_, find_by_key_, list_, unfinished_, due_, forget_;
+  Statement insert_, update_, find_, find_by_key_, find_result_, list_, unfinished_, due_, forget_;
 };
 
 } // namespace orbis::server

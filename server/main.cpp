@@ -71,9 +71,12 @@ void describe_serve(CLI::App& app, CommandLine& line) {
 
 void describe_run(CLI::App& app, CommandLine& line) {
   CLI::App* run = app.add_subcommand("run", "process one file");
-  run->add_option("input", line.run.input, "a model: GLB, glTF or Draco")->required()->type_name("IN");
+  run->add_option("input", line.run.input, "a model: GLB, glTF, Draco, OBJ, PLY, STL, or a zip of one with its files")
+      ->required()
+      ->type_name("IN");
   run->add_option("-o,--output", line.run.output, "the textured GLB")->required()->type_name("OUT.glb");
   run->add_option("--report", line.run.report, "what was found, done and proved")->type_name("REPORT.json");
+  run->add_option("--preview", line.run.preview, "the model and its spheres, to look at")->type_name("PREVIEW.png");
   run->add_option("--attach", line.run.attachments,
                   "a file that the model names or an image of a cube map; a directory stands for its files")
       ->type_name("FILE");

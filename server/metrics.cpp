@@ -63,6 +63,11 @@ void Metrics::job_refused() {
   ++refused_;
 }
 
+void Metrics::job_cached() {
+  const std::scoped_lock lock(mutex_);
+  ++cached_;
+}
+
 void Metrics::job_finished(const api::Job& job) {
   const std::scoped_lock lock(mutex_);
   ++finished_[std::string(name_of(job.state))];
@@ -89,6 +94,8 @@ std::string Metrics::text(const Gauges& gauges) const {
   sample(text, "orbis_jobs_accepted_total", "", static_cast<double>(accepted_));
   head(text, "orbis_jobs_refused_total", "counter", "Jobs that were refused because the queue was full.");
   sample(text, "orbis_jobs_refused_total", "", static_cast<double>(refused_));
+  head(text, "orbis_jobs_cached_total", "counter", "Jobs that were answered with the result of an earlier one.");
+  sample(text, "orbis_jobs_cached_total", "", static_cast<double>(cached_));
   head(text, "orbis_jobs_finished_total", "counter", "Jobs by how they ended.");
   for (const auto& [state, count] : finished_) {
     sample(text, "orbis_jobs_finished_total", "{state=\"" + state + "\"}", static_cast<double>(count));

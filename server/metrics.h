@@ -24,6 +24,7 @@ class Metrics {
 public:
   void job_accepted();
   void job_refused(); // the queue was full
+  void job_cached();  // answered with the result of an earlier one
   void job_finished(const api::Job& job);
   void request(std::string_view method, int status, double seconds);
 
@@ -41,7 +42,7 @@ private:
   static void append_histogram(std::string& text, std::string_view name, const Histogram& histogram);
 
   mutable std::mutex mutex_;
-  std::uint64_t accepted_ = 0, refused_ = 0;
+  std::uint64_t accepted_ = 0, refused_ = 0, cached_ = 0;
   std::map<std::string, std::uint64_t> finished_; // by state
   std::map<std::string, double> stage_seconds_;
   std::map<std::pair<std::string, int>, std::uint64_t> requests_; // by method and status

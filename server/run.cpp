@@ -81,6 +81,7 @@ fs::path place(const RunArguments& arguments, std::string_view name) {
   if (name == "result.glb") return arguments.output;
   if (name == "report.json") return arguments.report.value_or(fs::path());
   if (const auto map = map_of_output(name)) return arguments.save_maps ? *arguments.save_maps / *map : fs::path();
+  if (name == "preview.png" && arguments.preview) return *arguments.preview;
   const bool picture = name == "atlas.png" || name == "preview.png"; // they are among the dumps, under their numbers
   return arguments.dump_stages && !picture ? *arguments.dump_stages / name : fs::path();
 }

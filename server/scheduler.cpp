@@ -145,8 +145,11 @@ std::optional<Job> Scheduler::earlier_submission(const std::string& key, const s
 Job Scheduler::submit(api::Submission submission) {
   const Lock lock(mutex_);
   if (draining_) throw api::Refused(api::Refusal::draining, "the service is shutting down; try again soon");
-  StoredJob stored = new_job(submission, ids_.next(api::now()));
+  StoredJob stored = new_job(submission, ids_.next(api::now()), settings_.build);
   if (auto earlier = earlier_submission(stored.idempotency_key, stored.fingerprint)) return *std::move(earlier);
+  if (settings_.cache) {
+    if (auto answered = answer_from_cache(stored)) return *std::move(answered);
+  }
   if (queue_full()) {
     metrics_.job_refused();
     throw api::Refused(api::Refusal::queue_full,
@@ -166,6 +169,37 @@ Job Scheduler::submit(api::Submission submission) {
   log_job("job_queued", live.stored.job);
   work_.notify_one();
   return shown(live.stored);
+}
+
+// A job of its own, done at once, with the files of an earlier one that was asked for the same.
+std::optional<Job> Scheduler::answer_from_cache(StoredJob stored) {
+  const auto earlier = store_.find_result(stored.cache_key);
+  if (!earlier) return std::nullopt;
+  std::vector<std::string> names;
+  for (const auto& [name, file] : earlier->outputs) names.push_back(name);
+  try {
+    blobs_.share(earlier->job.id, stored.job.id, names);
+  } catch (const Error& error) {
+    // The store has logged why. The result can be made again.
+    remove_files(stored.job.id);
+    return std::nullopt;
+  }
+  stored.outputs = earlier->outputs;
+  stored.inputs.clear(); // the upload is not kept: nothing will read it
+  stored.job.input.triangles = earlier->job.input.triangles;
+  stored.job.result = earlier->job.result;
+  stored.job.partial = earlier->job.partial;
+  stored.job.maps = earlier->job.maps;
+  stored.job.cached = true;
+  stored.job.started = stored.job.created;
+  finish(stored, JobState::succeeded);
+  stored.job.version = 1;
+  store_.insert(stored);
+  changed(stored);
+  metrics_.job_cached();
+  metrics_.job_finished(stored.job);
+  log_job("job_cached", stored.job);
+  return stored.job;
 }
 
 // The job as clients see it.

@@ -26,6 +26,8 @@ struct SchedulerSettings {
   JobLimits limits;
   std::chrono::seconds time_to_live{24 * 3600}; // of a finished job's files
   std::uint32_t attempts = 3;                   // a job that was interrupted this often has failed
+  bool cache = true;                            // a request that was answered before is answered from there
+  std::string build;                            // tells this program from others: their results are not its own
 };
 
 class Scheduler final : public api::JobService {
@@ -83,6 +85,7 @@ private:
   [[nodiscard]] api::Job shown(const StoredJob& stored) const;
   [[nodiscard]] std::optional<api::Job> find_locked(std::string_view id);
   [[nodiscard]] std::optional<api::Job> earlier_submission(const std::string& key, const std::string& fingerprint);
+  [[nodiscard]] std::optional<api::Job> answer_from_cache(StoredJob stored);
   void remove_from_queue(const std::string& id);
 
   JobStore& store_;

@@ -3,11 +3,14 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <semaphore>
+#include <vector>
 
 #include "server/commands.h"
 #include "server/file_descriptor.h"
 #include "server/log.h"
+#include "server/sha256.h"
 #include "server/signals.h"
 #include "server/worker_process.h"
 
@@ -34,6 +37,18 @@ void raise_descriptor_limit() {
   ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+// The program's own digest: a result is as good as another only if the same build made it.
+std::string build_digest() {
+  Sha256 digest;
+  std::ifstream self("/proc/self/exe", std::ios::binary);
+  std::vector<char> piece(1 << 20);
+  while (self.read(piece.data(), static_cast<std::streamsize>(piece.size())) || self.gcount() > 0) {
+    digest.update(std::as_bytes(std::span(piece).first(static_cast<std::size_t>(self.gcount()))));
+  }
+  if (!self.eof()) throw Error(ErrorCode::internal, "the program cannot read itself, which the cache of results needs");
+  return digest.finish();
+}
+
 } // namespace
 
 int serve(const Config& config) {
@@ -48,7 +63,9 @@ int serve(const Config& config) {
   BlobStore blobs(config.data);
   Metrics metrics;
   WorkerProcess runner;
-  Scheduler scheduler(store, blobs, runner, metrics, config.scheduler);
+  SchedulerSettings settings = config.scheduler;
+  if (settings.cache) settings.build = build_digest();
+  Scheduler scheduler(store, blobs, runner, metrics, settings);
   api::Router router(scheduler, {config.keys});
   HttpServer http(router, blobs, metrics, config.http);
 

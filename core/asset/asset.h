@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/model_format.h"
 #include "core/options.h"
 #include "core/vec3.h"
 
@@ -20,8 +21,6 @@ namespace orbis::asset {
 using Bytes = std::vector<std::byte>;
 // Files that came with the request (multipart parts), by the name that a glTF's URI gives.
 using Attachments = std::map<std::string, Bytes, std::less<>>;
-
-enum class Format { glb, gltf, draco };
 
 // glTF component types, with glTF's own codes.
 enum class ComponentType : std::uint16_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
@@ -77,8 +76,8 @@ struct MaterialTexture {
 class Document;
 
 struct Asset {
-  Format format = Format::glb;
-  std::vector<Primitive> primitives; // triangles only; points and lines stay in the document
+  ModelFormat format = ModelFormat::glb; // of the model itself, where it came in a zip
+  std::vector<Primitive> primitives;     // triangles only; points and lines stay in the document
   std::shared_ptr<const Document> document;
   // Facts for the report: an external image that did not come with the request, an extension that was not understood, …
   struct Note {
@@ -87,14 +86,15 @@ struct Asset {
   std::vector<Note> notes;
 };
 
-// Recognises the format by content, not by name or media type, and reads it.
+// Recognises the format by content, not by name or media type (model_format.h), and reads it. OBJ, PLY, STL and raw
+// Draco become a glTF first; a zip is taken apart in memory, and its members come before `attachments`.
 //
-// GLB, glTF JSON (data URIs; other URIs only from `attachments`), raw Draco. Understands
-// KHR_draco_mesh_compression, KHR_mesh_quantization, EXT_meshopt_compression, sparse accessors, strips and fans.
+// GLB, glTF JSON (data URIs; other URIs only from `attachments`). Understands KHR_draco_mesh_compression,
+// KHR_mesh_quantization, EXT_meshopt_compression and KHR_meshopt_compression, sparse accessors, strips and fans.
 // Never touches the file system or the network. Untrusted input: every accessor, view, index, node and size is
 // checked before it is used. Throws Error: malformed, unsupported_format, unsupported_feature, too_large,
-// missing_resource, invalid_geometry (NaN or infinity, with the vertex that has it; no triangles at all; a mesh that
-// every node shows at scale zero).
+// missing_resource (a buffer; an image or a material library too, where files came with the model), invalid_geometry
+// (NaN or infinity, with the vertex that has it; no triangles at all; a mesh that every node shows at scale zero).
 [[nodiscard]] Asset read_asset(std::span<const std::byte> bytes, const Attachments& attachments, const Limits& limits);
 
 // The texture of a slot, or nothing where the primitive's material has none, its image did not come with the request or

@@ -22,7 +22,7 @@ void check_version(const JsonReader& reader, const Json& document) {
 }
 
 void check_extensions(const JsonReader& reader, const Json& document) {
-  for (const auto key : {"extensionsUsed", "extensionsRequired"}) {
+  for (const auto* key : {"extensionsUsed", "extensionsRequired"}) {
     const Json* names = reader.array(document, key);
     if (!names) continue;
     for (const Json& name : *names) {
@@ -42,7 +42,7 @@ void check_extensions(const JsonReader& reader, const Json& document) {
 }
 
 void check_shape(const JsonReader& reader, const Json& document) {
-  for (const auto key : {"scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "animations", "skins",
+  for (const auto* key : {"scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "animations", "skins",
                          "materials", "textures", "images", "samplers", "cameras"}) {
     const Json* items = reader.array(document, key);
     if (!items) continue;

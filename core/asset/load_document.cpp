@@ -4,6 +4,7 @@
 
 #include "core/asset/extensions.h"
 #include "core/asset/meshopt_codec.h"
+#include "core/asset/model_files.h"
 #include "core/asset/uri.h"
 
 namespace orbis::asset {
@@ -28,13 +29,6 @@ std::vector<bool> buffers_in_use(const Json& document) {
   return used;
 }
 
-[[noreturn]] void missing(const std::string& uri, const std::string& where) {
-  throw Error(ErrorCode::missing_resource,
-              "the file '" + shown(uri) +
-                  "' did not come with the request; send it along, or export a GLB that holds it",
-              where);
-}
-
 Bytes decoded_uri(const std::string& uri, const std::string& where) {
   auto data = decode_data_uri(uri);
   if (!data) throw Error(ErrorCode::malformed, "the data URI is not valid base64", where);
@@ -42,7 +36,7 @@ Bytes decoded_uri(const std::string& uri, const std::string& where) {
 }
 
 Bytes load_buffer(const Json& buffer, bool may_use_bin, std::optional<std::span<const std::byte>> bin,
-                  const Attachments& attachments, const std::string& where) {
+                  const ModelFiles& files, const std::string& where) {
   const Json* member = find(buffer, "uri");
   if (!member) {
     if (!may_use_bin || !bin) throw Error(ErrorCode::malformed, "the buffer has neither a URI nor binary data", where);
@@ -50,19 +44,17 @@ Bytes load_buffer(const Json& buffer, bool may_use_bin, std::optional<std::span<
   }
   const auto& uri = member->get_ref<const std::string&>();
   if (is_data_uri(uri)) return decoded_uri(uri, where + "/uri");
-  const Bytes* file = find_attachment(attachments, uri);
-  if (!file) missing(uri, where + "/uri");
-  return *file;
+  return files.require(uri, where + "/uri");
 }
 
-void load_buffers(Document& document, std::optional<std::span<const std::byte>> bin, const Attachments& attachments) {
+void load_buffers(Document& document, std::optional<std::span<const std::byte>> bin, const ModelFiles& files) {
   const std::vector<bool> used = buffers_in_use(document.json);
   document.buffers.resize(used.size());
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!used[i]) continue;
     Json& json = document.json["buffers"][i];
     const std::string where = "/buffers/" + std::to_string(i);
-    Bytes& bytes = document.buffers[i] = load_buffer(json, i == 0, bin, attachments, where);
+    Bytes& bytes = document.buffers[i] = load_buffer(json, i == 0, bin, files, where);
     const auto length = json.at("byteLength").get<std::size_t>();
     if (bytes.size() < length) {
       throw Error(ErrorCode::malformed,
@@ -98,15 +90,16 @@ void decode_views(Document& document, const Limits& limits) {
   }
 }
 
-// An image that did not come is no error: its URI stays, and what needs it says so.
-void load_images(Document& document, const Attachments& attachments) {
+// Where an image may be missing (ModelFiles::find) its URI stays, and what needs it says so.
+void load_images(Document& document, const ModelFiles& files) {
   for (std::size_t i = 0; i < array_size(document.json, "images"); ++i) {
     const Json* member = find(document.json["images"][i], "uri");
     if (!member) continue;
     const auto& uri = member->get_ref<const std::string&>();
+    const std::string where = "/images/" + std::to_string(i) + "/uri";
     if (is_data_uri(uri)) {
-      document.images.emplace(i, decoded_uri(uri, "/images/" + std::to_string(i) + "/uri"));
-    } else if (const Bytes* file = find_attachment(attachments, uri)) {
+      document.images.emplace(i, decoded_uri(uri, where));
+    } else if (const Bytes* file = files.find(uri, where)) {
       document.images.emplace(i, *file);
     }
   }
@@ -116,16 +109,16 @@ void load_images(Document& document, const Attachments& attachments) {
 
 std::uint64_t max_decoded_bytes(const Limits& limits) { return 128 * limits.max_vertices; }
 
-Document load_document(Json json, std::optional<std::span<const std::byte>> bin, const Attachments& attachments,
+Document load_document(Json json, std::optional<std::span<const std::byte>> bin, const ModelFiles& files,
                        const Limits& limits) {
   Document document;
   document.json = std::move(json);
   const auto used = extension_objects(document.json);
   document.keeps_numbers =
       !std::all_of(used.begin(), used.end(), [](const std::string& name) { return references_are_known(name); });
-  load_buffers(document, bin, attachments);
+  load_buffers(document, bin, files);
   decode_views(document, limits);
-  load_images(document, attachments);
+  load_images(document, files);
   return document;
 }
 

@@ -1,6 +1,5 @@
 #include "core/asset/read_draco_file.h"
 
-#include "core/asset/document.h"
 #include "core/asset/draco_decoder.h"
 #include "core/asset/load_document.h"
 
@@ -73,28 +72,17 @@ Primitive read_primitive(const DracoMesh& mesh, const Limits& limits, std::vecto
   return out;
 }
 
-// One node that shows one mesh; write_asset fills in the primitive.
-Json empty_document() {
-  Json document;
-  document["asset"]["version"] = "2.0";
-  document["scene"] = 0;
-  document["scenes"] = Json::array({Json{{"nodes", Json::array({0})}}});
-  document["nodes"] = Json::array({Json{{"mesh", 0}}});
-  document["meshes"] =
-      Json::array({Json{{"primitives", Json::array({Json{{"attributes", Json::object()}, {"mode", 4}}})}}});
-  return document;
-}
-
 } // namespace
 
-Asset read_draco_file(std::span<const std::byte> bytes, const Limits& limits) {
-  Asset asset;
-  asset.format = Format::draco;
-  asset.primitives.push_back(read_primitive(DracoMesh(bytes, limits, {}), limits, asset.notes));
-  auto document = std::make_shared<Document>();
-  document->json = empty_document();
-  asset.document = std::move(document);
-  return asset;
+Converted read_draco_file(std::span<const std::byte> bytes, const Limits& limits) {
+  Converted out;
+  const Primitive primitive = read_primitive(DracoMesh(bytes, limits, {}), limits, out.notes);
+  ModelBuilder model;
+  const std::size_t mesh = model.add_mesh("");
+  // A primitive without triangles is none in glTF; the reader says what an empty model lacks.
+  if (!primitive.indices.empty()) model.add_primitive(mesh, primitive.indices, primitive.attributes, std::nullopt);
+  out.glb = model.glb();
+  return out;
 }
 
 } // namespace orbis::asset

@@ -73,7 +73,7 @@ private:
 
   void accessor(J& a) const {
     slot(a, "bufferView", Kind::buffer_view);
-    for (const auto part : {"indices", "values"}) {
+    for (const auto* part : {"indices", "values"}) {
       if (J* found = find_path(a, "sparse", part)) slot(*found, "bufferView", Kind::buffer_view);
     }
   }
@@ -102,7 +102,7 @@ private:
   void texture(J& t) const {
     slot(t, "sampler", Kind::sampler);
     slot(t, "source", Kind::image);
-    for (const auto name : {"KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif", "MSFT_texture_dds"}) {
+    for (const auto* name : {"KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif", "MSFT_texture_dds"}) {
       extension_slot(t, name, "source", Kind::image);
     }
   }

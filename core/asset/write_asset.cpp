@@ -142,7 +142,7 @@ bool is_quantised(std::span<const Attribute> attributes) {
 }
 
 void require(Json& json, std::string_view extension) {
-  for (const auto list : {"extensionsUsed", "extensionsRequired"}) {
+  for (const auto* list : {"extensionsUsed", "extensionsRequired"}) {
     const Json* names = find(json, list);
     if (!names || std::find(names->begin(), names->end(), extension) == names->end()) append(json, list, extension);
   }
@@ -156,7 +156,7 @@ void update_extensions(Json& json, const Json& before, std::span<const NewPrimit
   for (const std::string& name : extension_objects(before)) {
     if (!used.contains(name)) gone.insert(name);
   }
-  for (const auto list : {"extensionsUsed", "extensionsRequired"}) {
+  for (const auto* list : {"extensionsUsed", "extensionsRequired"}) {
     Json* names = find(json, list);
     if (!names) continue;
     Json kept = Json::array();

@@ -90,7 +90,8 @@ std::optional<Collapse> Collapser::keep(std::uint32_t kept, std::uint32_t remove
     seen[count++] = wedge;
     add(wedge, wedge);
   });
-  const Vec3d p = sum.minimiser().value_or(mesh_.points[kept].position);
+  const Vec3d own = mesh_.points[kept].position;
+  const Vec3d p = mesh_.points[kept].is_joint ? own : sum.minimiser().value_or(own);
   return Collapse{removed, kept, sides, p, std::nullopt, std::max(sum.value(p), 0.0)};
 }
 

@@ -29,8 +29,12 @@ public:
     const std::size_t points = level.mesh.points;
     positions_.resize(points);
     right_.resize(points);
-    for (std::size_t v = 0; v < level.positions.size(); ++v)
-      positions_[level.mesh.vertices[v].point] = full.in_scale(level.positions[v]);
+    joint_.assign(points, false);
+    for (std::size_t v = 0; v < level.positions.size(); ++v) {
+      const texture::CutVertex& vertex = level.mesh.vertices[v];
+      positions_[vertex.point] = full.in_scale(level.positions[v]);
+      joint_[vertex.point] = joint_[vertex.point] || full.is_joint(vertex);
+    }
     sample();
   }
 
@@ -50,11 +54,11 @@ public:
     }
 
     // Conjugate gradients from where the points are, with the inverted 3x3 blocks as preconditioner.
-    Vectors x = positions_, r = right_, z(x.size()), p;
+    Vectors x = positions_, r = right_, z(x.size(), Vec3d{}), p;
     const Vectors ax = product_with(x);
     for (std::size_t i = 0; i < x.size(); ++i) {
       r[i] += positions_[i] * holds_[i] - ax[i];
-      z[i] = product(inverses[i], r[i]);
+      if (!joint_[i]) z[i] = product(inverses[i], r[i]); // joints are no unknowns: their steps are 0
     }
     p = z;
     double rz = dot(r, z);
@@ -64,7 +68,7 @@ public:
       for (std::size_t i = 0; i < x.size(); ++i) {
         x[i] += p[i] * alpha;
         r[i] -= ap[i] * alpha;
-        z[i] = product(inverses[i], r[i]);
+        if (!joint_[i]) z[i] = product(inverses[i], r[i]);
       }
       const double next = dot(r, z), beta = next / rz;
       rz = next;
@@ -162,6 +166,7 @@ private:
   std::vector<std::array<Symmetric3, 6>> blocks_; // of corners 0 0, 1 1, 2 2, 0 1, 1 2, 2 0 of each triangle
   Vectors positions_, right_;
   std::vector<double> holds_;
+  std::vector<bool> joint_; // by point
 };
 
 } // namespace

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/mesh/edges.h"
+
 namespace orbis::lod {
 namespace {
 
@@ -18,6 +20,7 @@ FullSurface::FullSurface(const mesh::TriangleMesh& surface, std::span<const std:
   scale_positions();
   number_regions(primitive_of);
   chart_map_.emplace(cut_, regions_);
+  find_joints();
 }
 
 void FullSurface::scale_positions() {
@@ -52,6 +55,39 @@ void FullSurface::number_regions(std::span<const std::uint32_t> primitive_of) {
   regions_.reserve(cut_.triangles.size());
   for (std::size_t t = 0; t < cut_.triangles.size(); ++t)
     regions_.push_back(cut_.chart[t] * primitives + primitive_of[cut_.parent[t]]);
+}
+
+// Vertices of the welded surface on edges with one triangle, at whose place there is another such vertex.
+void FullSurface::find_joints() {
+  joint_.assign(surface_.positions.size(), false);
+  std::vector<mesh::Triangle> points;
+  points.reserve(cut_.triangles.size());
+  for (const auto& [a, b, c] : cut_.triangles)
+    points.push_back({cut_.vertices[a].point, cut_.vertices[b].point, cut_.vertices[c].point});
+  std::vector<mesh::Index> rim;
+  const mesh::EdgeTable edges(points, cut_.points);
+  edges.for_each([&](mesh::Index low, mesh::Index high, std::span<const mesh::EdgeSide> sides) {
+    if (sides.size() != 1) return;
+    for (const mesh::Index v : {low, high})
+      if (v < joint_.size()) rim.push_back(v);
+  });
+  const auto key = [&](mesh::Index v) {
+    const Vec3f& p = surface_.positions[v];
+    return std::array{p.x, p.y, p.z};
+  };
+  std::sort(rim.begin(), rim.end(),
+            [&](mesh::Index a, mesh::Index b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+  for (std::size_t i = 1; i < rim.size(); ++i) {
+    if (rim[i] == rim[i - 1] || key(rim[i]) != key(rim[i - 1])) continue;
+    joint_[rim[i]] = joint_[rim[i - 1]] = true;
+  }
+}
+
+bool FullSurface::is_joint(const texture::CutVertex& vertex) const {
+  const mesh::Triangle& corners = surface_.triangles[vertex.triangle];
+  bool is_joint = true;
+  for (std::size_t k = 0; k < 3; ++k) is_joint = is_joint && (vertex.barycentric[k] == 0 || joint_[corners[k]]);
+  return is_joint;
 }
 
 Vec3d FullSurface::position(const Place& place) const {

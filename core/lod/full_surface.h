@@ -34,6 +34,10 @@ public:
   [[nodiscard]] Vec3d in_scale(const Vec3f& p) const { return (Vec3d(p) - centre_) * (1 / diagonal_); }
   [[nodiscard]] double diagonal() const { return diagonal_; }
 
+  // Whether a vertex of the cut lies where the surface was cut apart: on a rim that coincides with another, as along a
+  // loop around a handle. Such points keep their place on every level, or gaps would open there.
+  [[nodiscard]] bool is_joint(const texture::CutVertex& vertex) const;
+
   // Places on it by their uv.
   [[nodiscard]] const ChartMap& chart_map() const { return *chart_map_; }
 
@@ -44,6 +48,7 @@ public:
 
 private:
   void scale_positions();
+  void find_joints();
   void number_regions(std::span<const std::uint32_t> primitive_of);
 
   const mesh::TriangleMesh& surface_;
@@ -51,6 +56,7 @@ private:
   std::vector<Vec3d> positions_;
   std::vector<std::uint32_t> regions_;
   std::optional<ChartMap> chart_map_; // made after the regions
+  std::vector<bool> joint_;           // vertex of the welded surface
   Vec3d centre_;
   double diagonal_ = 1, uv_scale_ = 1;
 };

@@ -63,6 +63,7 @@ void WedgeMesh::make_wedges(const FullSurface& full) {
     first[vertex.point] = made;
     points[vertex.point].position = full.positions()[v];
     points[vertex.point].sphere = vertex.sphere;
+    points[vertex.point].is_joint = full.is_joint(vertex);
     return made;
   };
   for (std::uint32_t t = 0; t < cut.triangles.size(); ++t) {
@@ -96,8 +97,8 @@ void WedgeMesh::classify() {
       is_regular = is_regular && sides.has_value();
       seams += sides && sides->is_seam() ? 1 : 0;
     }
-    if (seams == 0 && is_regular) continue;
-    points[p].kind = seams == 2 && is_regular ? PointKind::seam : PointKind::fixed;
+    if (seams == 0 && is_regular && !points[p].is_joint) continue;
+    points[p].kind = seams == 2 && is_regular && !points[p].is_joint ? PointKind::seam : PointKind::fixed;
   }
 }
 

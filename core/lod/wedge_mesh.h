@@ -31,6 +31,7 @@ struct Point {
   PointKind kind = PointKind::interior;
   float drift = 0; // how far seams through here have left the outline of the full surface's charts, in the atlas
   bool is_alive = true;
+  bool is_joint = false; // never moves: FullSurface::is_joint
 };
 
 // The wedges of an edge (a, b) on each of its two sides. Where the surface ends there is one side, named twice.

@@ -73,7 +73,8 @@ private:
   void count_internal(const std::vector<std::vector<std::uint32_t>>& pieces) {
     std::vector<bool> is_shared(gluing_.twin.size(), false);
     for (const auto& sides : shared_) {
-      for (const std::uint32_t h : sides) is_shared[h] = true;
+      // The two sides of a sheet that share only its border are no walls.
+      for (const std::uint32_t h : sides) is_shared[h] = sides.size() > 2;
     }
     for (const auto& piece : pieces) {
       bool open = false, walled = true;

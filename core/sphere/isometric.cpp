@@ -86,6 +86,12 @@ constexpr Effort effort_of(Quality quality) {
   return {16'000, 250'000, 20, 1e-4, 60, 60, 2e-4};
 }
 
+// The stretch alone does not keep triangles from growing: on coarse levels that leads into minima that finer ones do
+// not get out of. So the map grows by the symmetric Dirichlet energy, and takes to the stretch at the end.
+TriangleEnergy energy_of_growth(const TriangleEnergy& target) {
+  return std::holds_alternative<Stretch>(target) ? SymmetricDirichlet{} : target;
+}
+
 class Refinement {
 public:
   Refinement(const TriangleEnergy& energy, Hierarchy hierarchy, std::vector<Vec3d> positions, const Effort& effort,
@@ -110,7 +116,8 @@ private:
     return {energy_, level_.triangles(), level_.stars(), level_.references()};
   }
 
-  TriangleEnergy energy_;
+  TriangleEnergy target_; // of the finest level
+  TriangleEnergy energy_; // on the way there
   Hierarchy hierarchy_;
   std::vector<Vec3d> positions_; // of the surface
   Effort effort_;
@@ -127,8 +134,9 @@ private:
 
 Refinement::Refinement(const TriangleEnergy& energy, Hierarchy hierarchy, std::vector<Vec3d> positions,
                        const Effort& effort, mesh::ThreadPool& pool)
-    : energy_(energy), hierarchy_(std::move(hierarchy)), positions_(std::move(positions)), effort_(effort), pool_(pool),
-      points_(positions_.size()), level_(hierarchy_), basis_(hierarchy_, pool) {
+    : target_(energy), energy_(energy_of_growth(energy)), hierarchy_(std::move(hierarchy)),
+      positions_(std::move(positions)), effort_(effort), pool_(pool), points_(positions_.size()), level_(hierarchy_),
+      basis_(hierarchy_, pool) {
   const mesh::Triangle& t = hierarchy_.triangles[hierarchy_.tetrahedron_slots[0]];
   Index apex = 0;
   for (const Index v : hierarchy_.tetrahedron) {
@@ -264,6 +272,7 @@ void Refinement::optimise(Progress& progress) {
     order_.build(level_.stars(), pool_);
   }
   // From here on the level is the whole mesh: its numbers are the hierarchy's.
+  energy_ = target_;
   converged = relax(final_sweeps, final_gain, points_, progress);
   GlobalStep global(whole_level(), basis_, pool_);
   for (int i = 0; i < effort_.steps && hierarchy_.rounds() > 0; ++i) {

@@ -340,7 +340,7 @@ private:
   void bake_ambient_occlusion() {
     if (!options().maps.names(Map::ambient_occlusion)) return;
     constexpr double most_texels = 1U << 17U;
-    const double texels = double{map_->width()} * map_->height() * static_cast<double>(cut_.pages.size());
+    const double texels = static_cast<double>(map_->width()) * map_->height() * static_cast<double>(cut_.pages.size());
     const auto step = static_cast<std::uint32_t>(std::max(std::ceil(std::sqrt(texels / most_texels)), 1.0));
     const texture::TexelMap map(page_mesh(), std::max(map_->width() / step, 1U), std::max(map_->height() / step, 1U),
                                 pool_);

@@ -32,10 +32,18 @@ std::vector<Vec3f> vectors(const asset::Primitive& primitive, std::string_view n
   return out;
 }
 
+void read_uv(const asset::Primitive& primitive, std::uint32_t texcoord, std::vector<Vec2f>& out) {
+  const asset::Attribute* uv = primitive.find("TEXCOORD_" + std::to_string(texcoord));
+  if (uv == nullptr || uv->components != 2) refuse("an attribute is missing from the file");
+  for (std::size_t v = 0; v < uv->count(); ++v)
+    out.push_back({static_cast<float>(uv->get(v, 0)), static_cast<float>(uv->get(v, 1))});
+}
+
 // What the file says, all primitives in a row.
 struct ReadBack {
   std::vector<std::uint32_t> first; // primitive of the input -> its first vertex in the row
   std::vector<Vec3f> sphere, position;
+  std::vector<Vec2f> uv;                   // in the atlas
   std::vector<mesh::Triangle> triangles;   // indices into the row
   std::vector<std::uint32_t> component_of; // triangle -> component of the surface
 };
@@ -54,7 +62,8 @@ ReadBack read_back(std::span<const std::byte> glb, const asset::Asset& input, co
     out.sphere.insert(out.sphere.end(), sphere.begin(), sphere.end());
     out.position.insert(out.position.end(), position.begin(), position.end());
     const std::vector<std::uint32_t>& component = delivery.component_of[i];
-    if (q.indices.size() != 3 * component.size()) refuse("a primitive has not the triangles that were written");
+    if (q.indices != delivery.primitives[i].indices) refuse("a primitive has not the triangles that were written");
+    read_uv(q, delivery.primitives[i].atlas_texcoord, out.uv);
     for (std::size_t t = 0; t < component.size(); ++t) {
       out.triangles.push_back({first + q.indices[3 * t], first + q.indices[3 * t + 1], first + q.indices[3 * t + 2]});
       out.component_of.push_back(component[t]);
@@ -135,12 +144,24 @@ std::vector<Vec3f> points_of(const Component& c, std::span<const sphere::GridPoi
   return out;
 }
 
+// The cut mesh with the texture coordinates that the file has.
+texture::CutMesh as_delivered(texture::CutMesh cut, const Delivery& delivery, const ReadBack& file) {
+  for (std::size_t v = 0; v < cut.vertices.size(); ++v) {
+    const OutputVertex o = delivery.of_cut_vertex[v];
+    cut.vertices[v].uv = file.uv.at(file.first[o.primitive] + o.vertex);
+  }
+  return cut;
+}
+
 } // namespace
 
 void certify_file(std::span<const std::byte> glb, const asset::Asset& asset, const Surface& surface,
-                  std::span<const sphere::GridPoint> points, const Delivery& delivery, Report& report) {
+                  const CutSphere& sphere, const Delivery& delivery, Report& report) {
+  const std::vector<sphere::GridPoint>& points = sphere.points;
   const ReadBack file = read_back(glb, asset, delivery);
   check_positions(asset, delivery, file);
+  report.atlas_certificate = texture::certify_atlas(as_delivered(sphere.cut, delivery, file));
+  if (!report.atlas_certificate.valid) refuse(report.atlas_certificate.failure());
   const std::vector<mesh::TriangleMesh> delivered = by_component(file, surface.components.size());
   for (std::size_t i = 0; i < surface.components.size(); ++i) {
     const Component& c = surface.components[i];

@@ -8,6 +8,7 @@
 #include "core/asset/asset.h"
 #include "core/report.h"
 #include "core/steps/interpolate.h"
+#include "core/steps/snap_and_cut.h"
 #include "core/steps/surface.h"
 #include "core/texture/atlas.h"
 
@@ -36,10 +37,11 @@ enum class RiderPolicy { deliver, leave_out };
                                      RiderPolicy riders = RiderPolicy::deliver);
 
 // Reads the finished file and proves each component's map on what it says: report.certificate at the input's
-// connectivity (the caps' own points, which no file holds, are those of `points`), report.cut_certificate on the
-// delivered triangles, joined where _SPHERE is equal to the bit; and every vertex of the surface still at its position.
-// points: one per vertex of the surface. Throws Error{not_certified} where any of it fails.
+// connectivity (the caps' own points, which no file holds, are those of `sphere`), report.cut_certificate on the
+// delivered triangles, joined where _SPHERE is equal to the bit; report.atlas_certificate on their texture coordinates;
+// and every vertex of the surface still at its position. sphere: what was delivered. Throws Error{not_certified} where
+// any of it fails.
 void certify_file(std::span<const std::byte> glb, const asset::Asset& asset, const Surface& surface,
-                  std::span<const sphere::GridPoint> points, const Delivery& delivery, Report& report);
+                  const CutSphere& sphere, const Delivery& delivery, Report& report);
 
 } // namespace orbis

@@ -10,6 +10,7 @@
 #include "core/sphere/snap.h"
 #include "core/texture/flat_charts.h"
 #include "core/texture/place.h"
+#include "core/texture/quality.h"
 
 namespace orbis {
 namespace {
@@ -117,6 +118,7 @@ void describe(const Surface& surface, const texture::CutMesh& cut, Report& repor
   for (const texture::Page& page : cut.pages) report.atlas.pages.push_back({page.width, page.height});
   report.atlas.gutter = cut.gutter;
   report.atlas.utilisation = texture::utilisation(cut);
+  report.atlas.quality = texture::measure_atlas(cut, surface.mesh);
   report.atlas.charts = cut.charts.size();
   report.atlas.cut_triangles = cut.cut_triangles;
   report.atlas.added_vertices = cut.points - surface.mesh.positions.size();

@@ -25,8 +25,7 @@ Certified certified_in(const Report& report) {
 } // namespace
 
 void describe_input(const asset::Asset& asset, Report& report) {
-  constexpr std::array<std::string_view, 3> formats{"glb", "gltf", "draco"};
-  report.format = formats.at(static_cast<std::size_t>(asset.format));
+  report.format = name_of(asset.format);
   for (const auto& note : asset.notes) report.notes.push_back({note.code, note.message, note.where});
 }
 

@@ -10,7 +10,7 @@ let current = null; // the address of the job that is shown
 async function buildOptions() {
   const contract = await (await fetch("/openapi.json")).json();
   const schemas = contract.components.schemas.Options.properties;
-  const texts = {threshold: "Threshold (shape-preserving)", jpeg_quality: "JPEG quality"};
+  const texts = {jpeg_quality: "JPEG quality"};
   for (const [name, schema] of Object.entries(schemas)) {
     const label = document.createElement("label");
     const plain = name.replaceAll("_", " ");
@@ -55,7 +55,7 @@ async function request(address, init = {}) {
 }
 
 function modelOf(list) {
-  const named = list.find((file) => /\.(glb|gltf|drc)$/i.test(file.name));
+  const named = list.find((file) => /\.(glb|gltf|drc|obj|ply|stl|zip)$/i.test(file.name));
   return named ?? list[0];
 }
 
@@ -70,12 +70,38 @@ async function start() {
   await follow(created);
 }
 
-// Polls, four times a second while it moves.
+// The events of a stream, one after the other: {id, event, data}. An EventSource could send no key.
+async function* eventsOf(response) {
+  const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
+  let text = "";
+  for (;;) {
+    const {value, done} = await reader.read();
+    if (done) return;
+    text += value;
+    const parts = text.split("\n\n");
+    text = parts.pop();
+    for (const part of parts) {
+      const fields = Object.fromEntries(part.split("\n").map((line) => line.split(/: ?(.*)/s)));
+      if (fields.data) yield {id: fields.id, event: fields.event, data: JSON.parse(fields.data)};
+    }
+  }
+}
+
+const isOver = (state) => state !== "queued" && state !== "running";
+
+// Shows what the job's events say until it is over; a stream that breaks off is taken up where it ended.
 async function follow(state) {
   $("cancel").disabled = false;
   show(state);
-  while (state.state === "queued" || state.state === "running") {
-    await new Promise((resolve) => setTimeout(resolve, 250));
+  let last = "";
+  while (!isOver(state.state)) {
+    const stream = await request(state.links.events, {headers: last ? {"Last-Event-ID": last} : {}});
+    for await (const {id, event, data} of eventsOf(stream)) {
+      last = id;
+      state = event === "state" ? data : {...state, progress: data};
+      show(state);
+    }
+    // Whatever happened meanwhile, and whether the service is still there.
     state = await (await request(state.links.self)).json();
     show(state);
   }
@@ -144,7 +170,8 @@ async function objectUrl(address) {
 
 async function showResult(state) {
   const report = await (await request(state.links.report)).json();
-  $("detail").textContent = `${report.input.triangles.toLocaleString()} triangles in ${milliseconds(state.timing.wall_ms)}`;
+  const triangles = `${report.input.triangles.toLocaleString()} triangles`;
+  $("detail").textContent = state.cached ? `${triangles}, known from before` : `${triangles} in ${milliseconds(state.timing.wall_ms)}`;
   $("download").href = await objectUrl(state.links.result);
   $("download").download = modelOf(files).name.replace(/\.[^.]*$/, "") + "-orbis.glb";
   $("report").href = URL.createObjectURL(new Blob([JSON.stringify(report, null, 2)], {type: "application/json"}));
@@ -162,8 +189,9 @@ async function showResult(state) {
     ["Lengths: symmetric Dirichlet energy (1 is best)", distortion.symmetric_dirichlet?.toFixed(3) ?? "–"],
     ["Atlas", `${report.atlas.pages.map((page) => `${page.width} × ${page.height}`).join(", ")}, ${(100 * report.atlas.utilisation).toFixed(0)} % used`],
   ]);
-  const stages = state.timing.stages.map((s) => [s.name, milliseconds(s.wall_ms), milliseconds(s.cpu_ms)]);
-  fillTable($("timings"), [...stages, ["in all", milliseconds(state.timing.wall_ms), milliseconds(state.timing.cpu_ms)]]);
+  // The report's times are of the run that made the result, which a cached job did not have.
+  const stages = report.timing.stages.map((s) => [s.name, milliseconds(s.wall_ms), milliseconds(s.cpu_ms)]);
+  fillTable($("timings"), [...stages, ["in all", milliseconds(report.timing.wall_ms), milliseconds(report.timing.cpu_ms)]]);
 }
 
 // ---- What the user does.

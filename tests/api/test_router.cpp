@@ -129,10 +129,12 @@ TEST_CASE_FIXTURE(Desk, "the format is recognised by content, and what cannot be
   CHECK(post({part("model", "", "glTF")}).status == 202);
   CHECK(post({part("model", "", "DRACO")}).status == 202);
   CHECK(post({part("model", "", "\xEF\xBB\xBF {\"asset\":{}}")}).status == 202);
-  CHECK(post({part("model", "", "solid cube")}).status == 415);
-  const auto zip = post({part("model", "", "PK\x03\x04....")});
-  CHECK(zip.status == 415);
-  CHECK(body_of(zip)["detail"].get<std::string>().find("zip") != std::string::npos);
+  for (const auto text : {"PK\x03\x04....", "ply\nformat ascii 1.0\n", "solid cube\n", "# a comment\nv 0 0 0\n"}) {
+    CHECK(post({part("model", "", text)}).status == 202);
+  }
+  const auto refused = post({part("model", "", "hello")});
+  CHECK(refused.status == 415);
+  CHECK(body_of(refused)["detail"].get<std::string>().find("STL") != std::string::npos);
 }
 
 TEST_CASE_FIXTURE(Desk, "media types that are not in the contract are refused before the body is read") {
@@ -140,7 +142,9 @@ TEST_CASE_FIXTURE(Desk, "media types that are not in the contract are refused be
   const auto early = [&](const std::string& type) {
     return router.refuse_early({"POST", "/v1/jobs", {}, {{"Content-Type", type}}, {}});
   };
-  CHECK_FALSE(early("model/gltf-binary").has_value());
+  for (const auto type : {"model/gltf-binary", "model/obj", "model/stl", "application/ply", "application/zip"}) {
+    CHECK_FALSE(early(type).has_value());
+  }
   CHECK_FALSE(early("Multipart/Form-Data; boundary=x").has_value());
   CHECK(early("text/html")->status == 415);
   CHECK_FALSE(early("application/x-www-form-urlencoded").has_value()); // what curl says unless told otherwise

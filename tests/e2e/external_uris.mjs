@@ -1,14 +1,19 @@
 // external_uris.mjs FILE: the external files that a .gltf or .glb names, one a line, as the URI has them.
 import fs from 'node:fs'
+import {fileURLToPath} from 'node:url'
 
-const bytes = fs.readFileSync(process.argv[2])
-const isGlb = bytes.toString('latin1', 0, 4) === 'glTF'
-const text = isGlb ? bytes.toString('utf8', 20, 20 + bytes.readUInt32LE(12)) : bytes.toString('utf8')
-let document = {}
-try {
-  document = JSON.parse(text)
-} catch {
-  // A broken file names nothing.
+export function externalUris(file) {
+  const bytes = fs.readFileSync(file)
+  const isGlb = bytes.toString('latin1', 0, 4) === 'glTF'
+  const text = isGlb ? bytes.toString('utf8', 20, 20 + bytes.readUInt32LE(12)) : bytes.toString('utf8')
+  let document = {}
+  try {
+    document = JSON.parse(text)
+  } catch {
+    // A broken file names nothing.
+  }
+  return [...(document.buffers ?? []), ...(document.images ?? [])].map(({uri}) => uri)
+    .filter((uri) => typeof uri === 'string' && !uri.startsWith('data:'))
 }
-for (const {uri} of [...(document.buffers ?? []), ...(document.images ?? [])])
-  if (typeof uri === 'string' && !uri.startsWith('data:')) console.log(uri)
+
+if (process.argv[1] === fileURLToPath(import.meta.url)) for (const uri of externalUris(process.argv[2])) console.log(uri)

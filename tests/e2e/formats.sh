@@ -40,6 +40,32 @@ test_seams_are_welded_for_the_topology() {
   expect "the surface's triangles" "$(json .topology.triangles)" 12
 }
 
+test_obj_ply_and_stl_come_back_textured() {
+  local kind
+  for kind in obj ply stl; do
+    textured "egg-$kind" "$models/egg.$kind" --header "Content-Type: $(media_type $kind)"
+    expect "the format" "$(json .format)" $kind
+    expect "the surface's triangles" "$(json .topology.triangles)" 1280
+  done
+}
+media_type() { case $1 in obj) echo model/obj ;; ply) echo application/ply ;; stl) echo model/stl ;; esac; }
+
+test_an_obj_with_its_library_and_image_comes_back_with_its_colours() {
+  post_parts "model=@$models/crate.obj" "file=@$models/crate.mtl" "file=@$models/crate colours.png"
+  outcome
+  expect_textured crate-obj
+  expect "the atlas' source" "$(json .atlas.source)" base_color
+}
+
+test_a_zip_holds_a_model_with_its_files() {
+  local kind
+  for kind in gltf obj; do
+    textured "crate-$kind-zip" "$models/crate-$kind.zip" --header 'Content-Type: application/zip'
+    expect "the format" "$(json .format)" $kind
+    expect "the atlas' source" "$(json .atlas.source)" base_color
+  done
+}
+
 test_names_and_extras_survive() {
   post "$models/crate.glb"
   outcome

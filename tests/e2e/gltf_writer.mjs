@@ -92,7 +92,7 @@ function pngChunk(type, data) {
   return Buffer.concat([length, body, crc])
 }
 
-function crc32(bytes) {
+export function crc32(bytes) {
   let crc = 0xffffffff
   for (const byte of bytes) {
     crc ^= byte

@@ -116,3 +116,21 @@ test_a_key_used_again_gives_the_same_job() {
   post "$models/crate.glb" --header 'Idempotency-Key: breakfast'
   expect_problem 422 key-reused
 }
+
+test_a_request_that_was_answered_before_is_answered_at_once() {
+  start_service cached --cache on
+  submit "$models/egg.glb"
+  await "$JOB"
+  expect "the first job's mark" "$(json .cached)" false
+  local first=$JOB sha256
+  sha256=$(json .result.sha256)
+  submit "$models/egg.glb"
+  get "$JOB"
+  expect "the state" "$(json .state)" succeeded
+  expect "the mark" "$(json .cached)" true
+  expect "the result" "$(json .result.sha256)" "$sha256"
+  [ "$JOB" != "$first" ] || fail "the job is not one of its own"
+  get "$JOB/report"
+  expect "the status of the report" "$STATUS" 200
+  stop_service
+}

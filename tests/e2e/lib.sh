@@ -38,11 +38,12 @@ orbis_command() {
 free_port() { node -e 'const s = require("net").createServer().listen(0, "127.0.0.1", () => { console.log(s.address().port); s.close(); })'; }
 
 # start_service DATA [ARGUMENTS…]: `orbis serve` on a free port, ready for requests. DATA names its data directory, the
-# same one for the same name. Sets URL and SERVICE, which the functions below take from here. With $ORBIS_IMAGE set the
+# same one for the same name. Results are made anew for each test, unless the arguments turn the cache on. Sets URL and SERVICE, which the functions below take from here. With $ORBIS_IMAGE set the
 # service is that image in a container, locked down as docker/compose.yaml has it.
 start_service() {
   local data=$1 port attempt
   shift
+  [[ $* == *--cache* ]] || set -- --cache off "$@"
   port=$(free_port)
   URL="http://127.0.0.1:$port"
   SERVICE_LOG="$work/service-$port.log"

@@ -4,6 +4,7 @@ import path from 'node:path'
 import draco3d from 'draco3d'
 import {GltfWriter, png} from './gltf_writer.mjs'
 import * as meshes from './meshes.mjs'
+import * as formats from './other_formats.mjs'
 
 const directory = process.argv[2]
 fs.mkdirSync(directory, {recursive: true})
@@ -116,6 +117,19 @@ const external = texturedCube('crate colours.png')
 save('crate.gltf', external.gltf('crate.bin'))
 save('crate.bin', external.bin())
 save('crate colours.png', checker())
+const library = 'newmtl checker\nKd 1 1 1\nmap_Kd crate colours.png\n'
+const crateObj = formats.obj(meshes.cubeWithSeams(), {library: 'crate.mtl', material: 'checker'})
+save('crate.obj', crateObj)
+save('crate.mtl', library)
+save('egg.obj', formats.obj(egg))
+save('egg.ply', formats.ply(egg, ([x, y, z]) => [128 + 70 * x, 128 + 120 * y, 128 + 120 * z]))
+save('egg.stl', formats.stl(egg))
+save('crate-gltf.zip', formats.zip({'crate/crate.gltf': external.gltf('crate.bin'), 'crate/crate.bin': external.bin(),
+  'crate/crate colours.png': checker()}))
+save('crate-obj.zip', formats.zip({'crate.obj': crateObj, 'crate.mtl': library, 'crate colours.png': checker()}))
+save('incomplete.zip', formats.zip({'crate.gltf': external.gltf('crate.bin'), 'crate.bin': external.bin()}))
+save('climbing.zip', formats.zip({'egg.obj': formats.obj(egg), '../../egg.mtl': library}))
+save('bomb.zip', formats.zip({'egg.obj': formats.obj(egg), 'bomb.bin': Buffer.alloc(64 << 20)}))
 save('egg-81920.glb', plain(meshes.ellipsoid(6)).glb())
 save('egg-327680.glb', plain(meshes.ellipsoid(7)).glb())
 

@@ -48,6 +48,17 @@ test_8_mb_of_garbage_after_a_draco_header_are_malformed() {
   expect_problem 400 malformed
 }
 
+test_a_file_that_a_zip_lacks_is_named() { refused incomplete.zip 422 missing-resource "'crate%20colours.png'|'crate colours.png'"; }
+
+test_a_file_that_a_form_lacks_is_named() {
+  post_parts "model=@$models/crate.gltf" "bin=@$models/crate.bin"
+  outcome
+  expect_problem 422 missing-resource 'crate colours.png'
+}
+
+test_a_zip_whose_names_climb_out_is_malformed() { refused climbing.zip 400 malformed 'leads out of the archive'; }
+test_a_zip_bomb_is_too_large() { refused bomb.zip 413 too-large '200 times'; }
+
 test_an_unknown_path_is_a_404() {
   get /v1/nothing
   expect_problem 404 not-found

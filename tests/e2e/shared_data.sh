@@ -36,9 +36,10 @@ is_answered() {
 no_collection() { skip "there is no collection of models at ../shared/data"; }
 
 if [ -r "$shared_data/MANIFEST.tsv" ]; then
-  while IFS=$'\t' read -r path _ _ _ _ class triangles _; do
-    case $class:$path in
+  while IFS=$'\t' read -r path _ _ _ _ class triangles notes; do
+    case $class:$path:$notes in
       *:made/hand-*) it "$path gets a plain answer" is_answered "$path" ;;
+      *$'\tmissing '*) it "$path is refused: it came without some of its files" is_refused "$path" '^422$' ;;
       ERROR:* | EMPTY:*) it "$path is refused as broken" is_refused "$path" '^4(00|13|15|22)$' ;;
       *)
         # The few larger ones are for ./dev bench.

@@ -67,7 +67,7 @@ public:
 private:
   static void write_outputs(const server::JobHooks& hooks, server::JobOutcome& outcome, bool with_report) {
     const std::string report =
-        R"({"timing":{"stages":[{"name":"refine","wall_ms":5,"cpu_ms":6}]},"input":{"triangles":12}})";
+        R"({"timing":{"stages":[{"name":"refine","wall_ms":5,"cpu_ms":6}]},"partial":false,"input":{"triangles":12}})";
     for (const std::string name : {"result.glb", "atlas.png", "preview.png", "map-normal.png", "report.json"}) {
       if (name == "report.json" && !with_report) continue;
       const std::string contents = name == "report.json" ? report : "contents of " + name;

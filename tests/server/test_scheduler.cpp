@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <thread>
 
 #include "server/fake_runner.h"
 #include "server/job_files.h"
@@ -44,10 +45,13 @@ struct Service {
     down();
     up();
   }
-  api::Job submit(const std::string& key = "", const std::string& contents = "glTF") {
+  api::Job submit(const std::string& key = "", const std::string& contents = "glTF", const std::string& option = "",
+                  const std::string& value = "") {
     api::Part part{"model", "", "", blobs->spool_path(), contents.size(), contents};
     std::ofstream(part.spooled) << contents;
-    return scheduler->submit({part, {}, {}, key});
+    Options options;
+    if (!option.empty()) set_option(options, option, value);
+    return scheduler->submit({part, {}, options, key});
   }
   // Waits for the end of a job.
   api::Job finished(const std::string& id) {
@@ -273,4 +277,54 @@ TEST_CASE("the metrics count what happened") {
   CHECK(text.find("orbis_jobs_accepted_total 1\n") != std::string::npos);
   CHECK(text.find("orbis_jobs_finished_total{state=\"succeeded\"} 1\n") != std::string::npos);
   CHECK(text.find("orbis_stage_seconds_total{stage=\"refine\"} 0.005\n") != std::string::npos);
+}
+
+TEST_CASE("a request that was answered before is answered from there, as a job of its own") {
+  Service service;
+  const api::Job first = service.finished(service.submit().id);
+  const api::Job again = service.submit();
+  CHECK(again.id != first.id);
+  CHECK(again.state == JobState::succeeded);
+  CHECK(again.cached);
+  CHECK_FALSE(first.cached);
+  CHECK(again.result->sha256 == first.result->sha256);
+  CHECK(again.input.triangles == first.input.triangles);
+  CHECK(service.scheduler->find(again.id)->cached);
+  CHECK(service.scheduler->list({}).items.size() == 2);
+  CHECK(service.metrics.text({}).find("orbis_jobs_cached_total 1\n") != std::string::npos);
+  service.runner.wait_started(1);
+  CHECK(std::filesystem::exists(service.scheduler->file(again.id, api::JobFile::result)->path));
+}
+
+TEST_CASE(
+    "other bytes, other options, another build, a failed job and a cache that is off are not answered from before") {
+  Service service;
+  service.finished(service.submit().id);
+  CHECK_FALSE(service.submit("", "glTF and more").cached);
+  CHECK_FALSE(service.submit("", "glTF", "texture_size", "512").cached);
+  CHECK(service.submit("", "glTF", "threads", "3").cached); // changes nothing in the result
+  service.settings.build = "another";
+  service.restart();
+  CHECK_FALSE(service.submit().cached);
+  service.settings.cache = false;
+  service.restart();
+  service.finished(service.submit().id);
+  CHECK_FALSE(service.submit().cached);
+
+  Service failing(FakeRunner::Behaviour::fail);
+  failing.finished(failing.submit().id);
+  CHECK_FALSE(failing.submit().cached);
+}
+
+TEST_CASE("what the cache gave outlives the job that it came from; what has expired is made again") {
+  Service service;
+  const api::Job first = service.finished(service.submit().id);
+  std::this_thread::sleep_for(std::chrono::milliseconds(2)); // expiry is told in milliseconds
+  const api::Job again = service.submit();
+  service.scheduler->collect_garbage(*first.expires);
+  CHECK(service.scheduler->find(first.id)->state == JobState::expired);
+  CHECK(std::filesystem::exists(service.scheduler->file(again.id, api::JobFile::result)->path));
+  CHECK(service.submit().cached);
+  service.scheduler->collect_garbage(api::now() + std::chrono::hours(25));
+  CHECK_FALSE(service.submit().cached);
 }

@@ -67,7 +67,7 @@ TEST_CASE("a raw Draco mesh reads to the bit, with glTF's names") {
       attribute("_GENERIC_0", ComponentType::i16, 1,
                 bytes_of({std::int16_t{-5}, std::int16_t{5}, std::int16_t{32767}, std::int16_t{-32768}}))};
   const Asset asset = read_asset(encode_draco(triangles, attributes), {}, Limits{});
-  CHECK(asset.format == Format::draco);
+  CHECK(asset.format == ModelFormat::draco);
   CHECK(asset.notes.empty());
   REQUIRE(asset.primitives.size() == 1);
   const Primitive& primitive = asset.primitives[0];
@@ -86,7 +86,7 @@ TEST_CASE("a raw Draco mesh reads to the bit, with glTF's names") {
 TEST_CASE("a raw Draco mesh becomes a document with one scene, node, mesh and material") {
   const Asset asset = read_asset(encode_draco(triangles, std::vector{positions()}), {}, Limits{});
   const Primitive& p = asset.primitives.at(0);
-  NewPrimitive out{p.indices, p.attributes, {}, 0};
+  NewPrimitive out{p.indices, p.attributes, {}, 0, {}, false};
   out.attributes.push_back(attribute("TEXCOORD_0", ComponentType::f32, 2, test::Bytes(32)));
   out.textures[TextureSlot::base_color] = 0;
   const Bytes glb = write_asset(asset, std::vector{out}, std::vector{NewImage{test::tiny_png(), "image/png"}}, "{}",

@@ -58,7 +58,7 @@ test::Bytes compressed() {
   const GltfBuilder b = full();
   const Asset asset = read_asset(b.glb(), {}, Limits{});
   const Primitive& p = asset.primitives.at(0);
-  return write_asset(asset, std::vector{NewPrimitive{p.indices, p.attributes, p.targets, 0}},
+  return write_asset(asset, std::vector{NewPrimitive{p.indices, p.attributes, p.targets, 0, {}, false}},
                      std::vector{NewImage{test::tiny_png(), "image/png"}}, "{}", Compression::draco);
 }
 

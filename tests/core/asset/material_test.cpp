@@ -297,7 +297,7 @@ TEST_CASE("variants that name the primitive's own material follow it, others kee
 
 TEST_CASE("images of data URIs and of files move into the GLB; those that did not come keep their URI") {
   GltfBuilder b = textured();
-  for (const auto* uri : {"here.jpg", "elsewhere.png"}) {
+  for (const auto* uri : {"here.jpg", "https://example.com/elsewhere.png"}) {
     const auto image = b.append("images", Json{{"uri", uri}, {"name", uri}});
     const auto texture = b.append("textures", Json{{"source", image}});
     b.append("materials", Json{{"emissiveTexture", {{"index", texture}}}});
@@ -309,7 +309,7 @@ TEST_CASE("images of data URIs and of files move into the GLB; those that did no
   CHECK(json["images"][0]["name"] == "here.jpg");
   CHECK(json["images"][0]["mimeType"] == "image/jpeg");
   CHECK_FALSE(json["images"][0].contains("uri"));
-  CHECK(json["images"][1]["uri"] == "elsewhere.png");
+  CHECK(json["images"][1]["uri"] == "https://example.com/elsewhere.png");
   CHECK(json["images"][2]["mimeType"] == "image/png");
   CHECK_FALSE(json["images"][2].contains("uri"));
 }

@@ -58,7 +58,7 @@ void check_attribute(const std::vector<T>& values, std::string_view type, std::s
 TEST_CASE("a GLB, the same as JSON with a data URI, and the same with a file beside it read alike") {
   const GltfBuilder b = tetrahedron();
   const Asset glb = read(b.glb());
-  CHECK(glb.format == Format::glb);
+  CHECK(glb.format == ModelFormat::glb);
   REQUIRE(glb.primitives.size() == 1);
   CHECK(glb.primitives[0].indices == tetrahedron_triangles);
   CHECK(glb.primitives[0].vertex_count() == 4);
@@ -67,7 +67,7 @@ TEST_CASE("a GLB, the same as JSON with a data URI, and the same with a file bes
   CHECK(glb.notes.empty());
 
   const Asset gltf = read(b.gltf());
-  CHECK(gltf.format == Format::gltf);
+  CHECK(gltf.format == ModelFormat::gltf);
   CHECK(gltf.primitives.at(0).indices == tetrahedron_triangles);
   CHECK(gltf.primitives[0].attributes[0].data == glb.primitives[0].attributes[0].data);
 
@@ -239,14 +239,27 @@ TEST_CASE("numbers of an attribute go in and out as the specification says") {
   }
 }
 
-TEST_CASE("an image that did not come is a note, not an error") {
+TEST_CASE("an image that did not come is a note where the model came alone") {
   GltfBuilder b = tetrahedron();
-  for (const auto uri : {"http://127.0.0.1:1/a.png", "../../../../etc/passwd", "a.png"}) {
-    b.append("images", Json{{"uri", uri}});
-  }
-  const Asset asset = read(b.glb(), {{"a.png", test::tiny_png()}});
+  for (const auto uri : {"http://127.0.0.1:1/a.png", "../../../../etc/passwd"}) b.append("images", Json{{"uri", uri}});
+  const Asset asset = read(b.glb());
   REQUIRE(asset.notes.size() == 2);
   CHECK(asset.notes[0].code == "image-missing");
   CHECK(asset.notes[0].where == "/images/0");
   CHECK(asset.notes[1].where == "/images/1");
+}
+
+TEST_CASE("where files came along, an image that did not is an error that names it, unless it lies elsewhere") {
+  GltfBuilder b = tetrahedron();
+  for (const auto uri : {"http://127.0.0.1:1/a.png", "a.png"}) b.append("images", Json{{"uri", uri}});
+  CHECK(read(b.glb(), {{"a.png", test::tiny_png()}}).notes.size() == 1);
+  b.append("images", Json{{"uri", "b.png"}});
+  try {
+    (void)read(b.glb(), {{"a.png", test::tiny_png()}});
+    FAIL("the model was read");
+  } catch (const Error& error) {
+    CHECK(error.code() == ErrorCode::missing_resource);
+    CHECK(error.message().find("'b.png'") != std::string::npos);
+    CHECK(error.where() == "/images/2/uri");
+  }
 }

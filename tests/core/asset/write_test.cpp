@@ -33,7 +33,7 @@ test::Bytes view_bytes(const Bytes& glb, const Json& json, std::size_t view) {
 
 // The primitive as it is, with atlas coordinates and sphere points added.
 NewPrimitive with_atlas(const Primitive& primitive) {
-  NewPrimitive out{primitive.indices, primitive.attributes, primitive.targets, 0};
+  NewPrimitive out{primitive.indices, primitive.attributes, primitive.targets, 0, {}, false};
   while (primitive.find("TEXCOORD_" + std::to_string(out.atlas_texcoord))) ++out.atlas_texcoord;
   Attribute uv{"TEXCOORD_" + std::to_string(out.atlas_texcoord), ComponentType::f32, false, 2,
                test::Bytes(primitive.vertex_count() * 8)};

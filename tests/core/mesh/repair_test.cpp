@@ -183,6 +183,7 @@ TEST_CASE("a sheet with two sides is two sheets, and without volume but cut othe
     REQUIRE(r.pieces.size() == 2);
     CHECK(r.pieces[0].soup_triangles == front);
     CHECK(r.pieces[1].boundary_loops == 1);
+    CHECK(r.counts.internal_triangles == 0);
   }
   TriangleMesh quad = shapes::terrain(1, 1);
   quad.triangles = {{0, 2, 3}, {0, 3, 1}, {0, 1, 2}, {1, 3, 2}}; // the other diagonal on its back: a flat tetrahedron

@@ -92,6 +92,21 @@ TEST_CASE("degenerate geometry is certified") {
   check_certified(coincident);
 }
 
+TEST_CASE("needles and tiny extremities are certified") {
+  TriangleMesh needles = shapes::bumpy_sphere(4);
+  for (Vec3f& p : needles.positions) p.x *= 1e6F;
+  check_certified(needles);
+
+  // A cap with all of its detail, drawn together until it holds 10^-8 of the area and less.
+  for (const float size : {1e-4F, 1e-6F}) {
+    TriangleMesh extremity = shapes::sphere(5);
+    for (Vec3f& p : extremity.positions) {
+      if (p.z > 0.5F) p = {p.x * size, p.y * size, 0.5F + (p.z - 0.5F) * size};
+    }
+    check_certified(extremity);
+  }
+}
+
 TEST_CASE("the size of the coordinates does not matter") {
   const TriangleMesh m = shapes::bumpy_sphere(4);
   for (const float s : {1e-37F, 1e-44F, 1e-30F, 1e30F, 1e38F}) check_certified(scaled(m, s));

@@ -1,0 +1,16 @@
+// Polygon files (G. Turk, The PLY Polygon File Format, 1994), textual and binary of either byte order.
+#pragma once
+
+#include "core/asset/model_builder.h"
+#include "core/asset/model_files.h"
+
+namespace orbis::asset {
+
+// The elements "vertex" (x, y, z; nx, ny, nz; red, green, blue and alpha; s, t or their other names) and "face" (a list
+// of vertices; polygons become triangles), and the texture that MeshLab names in a comment. Integer colours are taken
+// for sRGB and become linear, as glTF has them; v is turned round, since glTF counts it downward. What else there is
+// gets a note. Throws Error: malformed, too_large, missing_resource, unsupported_feature (faces before vertices),
+// invalid_geometry (no vertices or no faces: a point cloud).
+[[nodiscard]] Converted read_ply(std::span<const std::byte> bytes, const Limits& limits, const ModelFiles& files);
+
+} // namespace orbis::asset

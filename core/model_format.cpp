@@ -1,0 +1,68 @@
+#include "core/model_format.h"
+
+#include <algorithm>
+#include <array>
+
+namespace orbis {
+namespace {
+
+constexpr std::string_view white_space = " \t\r\n";
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
+std::string_view trimmed_front(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(white_space);
+  return first == std::string_view::npos ? std::string_view() : text.substr(first);
+}
+
+bool is_text(std::string_view head) {
+  return std::ranges::none_of(head, [](char c) { return static_cast<unsigned char>(c) < 9; });
+}
+
+bool is_obj(std::string_view head) {
+  constexpr std::array<std::string_view, 15> keywords{"v",      "vt",     "vn", "vp", "f",      "l",      "p", "o",
+                                                      "mtllib", "usemtl", "s",  "g",  "usemap", "cstype", "mg"};
+  if (!is_text(head)) return false;
+  for (std::string_view rest = trimmed_front(head); !rest.empty(); rest = trimmed_front(rest)) {
+    const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
+    if (rest.front() != '#') {
+      const std::string_view word = rest.substr(0, std::min(rest.find_first_of(white_space), rest.size()));
+      return word.size() < rest.size() && std::ranges::find(keywords, word) != keywords.end();
+    }
+    rest.remove_prefix(end);
+  }
+  return head.starts_with('#') || head.find("\n#") != std::string_view::npos;
+}
+
+} // namespace
+
+std::string_view name_of(ModelFormat format) {
+  constexpr std::array<std::string_view, 7> names{"glb", "gltf", "draco", "obj", "ply", "stl", "zip"};
+  return names.at(static_cast<std::size_t>(format));
+}
+
+bool is_binary_stl(std::string_view head, std::uint64_t size) {
+  constexpr std::uint64_t header = 84, triangle = 50;
+  if (head.size() < header) return false;
+  std::uint64_t count = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    count |= static_cast<std::uint64_t>(static_cast<unsigned char>(head[80 + i])) << (8 * i);
+  }
+  return count > 0 && size == header + count * triangle;
+}
+
+std::optional<ModelFormat> recognise(std::string_view head, std::uint64_t size) {
+  head = head.substr(0, format_head_bytes);
+  if (head.starts_with("glTF")) return ModelFormat::glb;
+  if (head.starts_with("DRACO")) return ModelFormat::draco;
+  if (head.starts_with("PK\x03\x04") || head.starts_with("PK\x05\x06")) return ModelFormat::zip;
+  if (head.starts_with("ply\n") || head.starts_with("ply\r")) return ModelFormat::ply;
+  if (is_binary_stl(head, size)) return ModelFormat::stl;
+  if (head.starts_with(byte_order_mark)) head.remove_prefix(byte_order_mark.size());
+  const std::string_view text = trimmed_front(head);
+  if (text.starts_with('{') || text.starts_with('[')) return ModelFormat::gltf;
+  if (text.starts_with("solid") && is_text(head)) return ModelFormat::stl;
+  if (is_obj(head)) return ModelFormat::obj;
+  return std::nullopt;
+}
+
+} // namespace orbis

@@ -1,0 +1,73 @@
+// The service's own page in a browser: a model is chosen and sent, its progress followed, its result shown and downloaded.
+import {spawn} from 'node:child_process'
+import fs from 'node:fs'
+import path from 'node:path'
+
+// Starts `orbis serve` on a free port; resolves with its address and what stops it.
+async function serve(orbis, data) {
+  const child = spawn(orbis, ['serve', '--port', '0', '--data', data, '--workers', '1'], {stdio: ['ignore', 'ignore', 'pipe']})
+  const address = await new Promise((resolve, reject) => {
+    let log = ''
+    child.stderr.on('data', (text) => {
+      log += text
+      const line = log.split('\n').find((part) => part.includes('"listening"'))
+      if (line) resolve(JSON.parse(line).address)
+    })
+    child.on('exit', () => reject(new Error(`the service did not start: ${log}`)))
+  })
+  const stopped = new Promise((resolve) => child.on('exit', resolve))
+  return {address, stop: () => { child.kill('SIGTERM'); return stopped }}
+}
+
+const expect = (holds, what) => { if (!holds) throw new Error(what) }
+
+// Sends `files` through the page and returns what it shows in the end. `picture` is a screenshot of that.
+async function send(page, files, picture) {
+  await page.setInputFiles('#files', files)
+  await page.click('button[type=submit]')
+  await page.waitForFunction(() => /Done|Failed|Canceled|not|supported|closed/.test(document.querySelector('#state').textContent) &&
+    !document.querySelector('[type=submit]').disabled, null, {timeout: 300_000})
+  await page.screenshot({path: picture, fullPage: true})
+  return page.evaluate(() => ({
+    state: document.querySelector('#state').textContent,
+    detail: document.querySelector('#detail').textContent,
+    failed: document.querySelector('#job').classList.contains('failed'),
+    pictures: [...document.querySelectorAll('figure:not([hidden]) img')].map((image) => image.naturalWidth),
+    facts: document.querySelectorAll('#facts tbody tr').length,
+  }))
+}
+
+// `models`: a directory with crate.gltf and its files; `refused`: a model that no option makes right.
+export async function testPage({orbis, browser, models, refused, scratch, out}, test) {
+  const service = await serve(orbis, path.join(scratch, 'service'))
+  const page = await browser.newPage({viewport: {width: 1100, height: 800}})
+  const complaints = []
+  page.on('console', (message) => { if (message.type() === 'error') complaints.push(message.text()) })
+  page.on('pageerror', (error) => complaints.push(error.message))
+  const crate = ['crate.gltf', 'crate.bin', 'crate colours.png'].map((name) => path.join(models, name))
+  await page.goto(service.address)
+
+  await test('the page sends a model of several files, shows what came back, and gives it for download', async () => {
+    const shown = await send(page, crate, path.join(out, 'page-done.png'))
+    expect(shown.state === 'Done', `the page says '${shown.state}: ${shown.detail}'`)
+    expect(shown.pictures.length === 2 && shown.pictures.every((width) => width > 0), 'a picture is missing')
+    expect(shown.facts > 3, 'there are no facts')
+    const [download] = await Promise.all([page.waitForEvent('download'), page.click('#download')])
+    expect(download.suggestedFilename() === 'crate-orbis.glb', `the file is called ${download.suggestedFilename()}`)
+    const file = path.join(scratch, 'downloaded.glb')
+    await download.saveAs(file)
+    expect(fs.readFileSync(file).toString('latin1', 0, 4) === 'glTF', 'the download is no GLB')
+  })
+  await test('the page says that a result was there already', async () => {
+    const shown = await send(page, crate, path.join(out, 'page-cached.png'))
+    expect(/known from before/.test(shown.detail), `the page says '${shown.detail}'`)
+  })
+  await test('the page tells why a model was refused', async () => {
+    const shown = await send(page, [refused], path.join(out, 'page-refused.png'))
+    expect(shown.failed && shown.detail.length > 20, `the page says '${shown.state}: ${shown.detail}'`)
+    expect(shown.pictures.length === 0, 'the pictures of the model before are still there')
+  })
+  await test('the browser has nothing to complain about', () => expect(complaints.length === 0, complaints.join('; ')))
+  await page.close()
+  await service.stop()
+}
