@@ -366,7 +366,7 @@ private:
 
   // "normal"; with several pages "normal-2".
   [[nodiscard]] std::string named(const std::string& map) const {
-    return map + (cut_.pages.size() > 1 ? "-" + std::to_string(page_ + 1) : "");
+    return cut_.pages.size() > 1 ? map + '-' + std::to_string(page_ + 1) : map;
   }
 
   std::uint32_t add_image(const Image& image, MapKind kind, const std::string& name) {
