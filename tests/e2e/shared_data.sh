@@ -38,6 +38,8 @@ no_collection() { skip "there is no collection of models at ../shared/data"; }
 if [ -r "$shared_data/MANIFEST.tsv" ]; then
   while IFS=$'\t' read -r path _ _ _ _ class triangles notes; do
     case $class:$path:$notes in
+      # 15,894 loose triangles, three charts each and more: too many for the small atlas of these tests, which is said.
+      *:made/cat-soup-jitter*) it "$path gets a plain answer" is_answered "$path" ;;
       *:made/hand-*) it "$path gets a plain answer" is_answered "$path" ;;
       *$'\tmissing '*) it "$path is refused: it came without some of its files" is_refused "$path" '^422$' ;;
       ERROR:* | EMPTY:*) it "$path is refused as broken" is_refused "$path" '^4(00|13|15|22)$' ;;
