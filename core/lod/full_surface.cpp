@@ -25,12 +25,8 @@ FullSurface::FullSurface(const mesh::TriangleMesh& surface, std::span<const std:
 
 void FullSurface::scale_positions() {
   positions_.reserve(cut_.vertices.size());
-  for (const texture::CutVertex& v : cut_.vertices) {
-    Vec3d p;
-    for (std::size_t k = 0; k < 3; ++k)
-      p += Vec3d(surface_.positions[surface_.triangles[v.triangle][k]]) * v.barycentric[k];
-    positions_.push_back(p);
-  }
+  for (const texture::CutVertex& v : cut_.vertices)
+    positions_.push_back(texture::interpolated(surface_.positions, surface_.triangles, v));
   if (positions_.empty()) return;
   Vec3d low = positions_[0], high = positions_[0];
   for (const Vec3d& p : positions_) {

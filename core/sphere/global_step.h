@@ -20,8 +20,8 @@ struct StepOutcome {
   double before = 0; // the energy
 };
 
-// Goes along a direction: the whole way, or half of it and so on, until the energy falls, which also says that no
-// triangle folds; and on, twice as far, while it falls further. Where no step helps the points stay.
+// Goes along a direction: the whole way, or half of it and so on, until the folds that it made can be untangled and the
+// energy falls; and on, twice as far, while it falls further. Where no step helps the points stay.
 //   direction  one per vertex, in the frames of the points
 //   trial      scratch
 StepOutcome step_along(const WholeLevel& level, std::span<const Tangent> direction, std::span<Vec3d> points,

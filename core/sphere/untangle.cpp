@@ -145,10 +145,15 @@ private:
       }
       return angle < 3 * std::numbers::pi; // it is a multiple of 2 pi
     };
-    return std::ranges::all_of(patch_, [&](Index v) {
-      return winds_once(v) &&
-             std::ranges::all_of(level_.stars[v], [&](const StarCorner& c) { return winds_once(c.next); });
-    });
+    std::vector<Index> changed = patch_;
+    for (const Index v : patch_) {
+      for (const StarCorner& c : level_.stars[v]) {
+        if (in_patch_[c.next] == 0) changed.push_back(c.next);
+      }
+    }
+    std::ranges::sort(changed);
+    changed.erase(std::ranges::unique(changed).begin(), changed.end());
+    return std::ranges::all_of(changed, winds_once);
   }
 
   void grow(std::span<const std::uint32_t> folded, int rings) {

@@ -34,20 +34,7 @@ CornerValues::CornerValues(const asset::Asset& asset, const Surface& surface, co
 }
 
 std::array<double, 3> CornerValues::weights_in_parent(std::size_t t, std::size_t k) const {
-  const texture::CutVertex& v = cut_.vertices[cut_.triangles[t][k]];
-  const std::uint32_t parent = cut_.parent[t];
-  if (v.triangle == parent) return v.barycentric;
-  // A point on an edge or at a corner, described from the neighbour's side: the corners that it has a part of are
-  // shared.
-  std::array<double, 3> out{};
-  const mesh::Triangle &here = surface_.mesh.triangles[parent], &there = surface_.mesh.triangles[v.triangle];
-  for (std::size_t j = 0; j < 3; ++j) {
-    if (v.barycentric[j] == 0) continue;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (here[i] == there[j]) out[i] = v.barycentric[j];
-    }
-  }
-  return out;
+  return texture::weights_on(cut_.parent[t], surface_.mesh.triangles, cut_.vertices[cut_.triangles[t][k]]);
 }
 
 // Calls fill(t, value) for every triangle shown.

@@ -61,22 +61,8 @@ private:
 
   std::uint32_t copy_on_rider(const Rider& rider, mesh::Index v) {
     const texture::CutVertex& vertex = cut_.vertices[v];
-    const VertexSource source{in_primitive(rider), weights_on(rider.twin, vertex)};
+    const VertexSource source{in_primitive(rider), texture::weights_on(rider.twin, surface_.mesh.triangles, vertex)};
     return add(rider.primitive, source, sphere::from_grid(vertex.sphere), vertex.uv).vertex;
-  }
-
-  // A cut vertex on an edge or at a corner may have been made for the neighbour: the same input vertices, in another
-  // order.
-  [[nodiscard]] std::array<double, 3> weights_on(std::uint32_t triangle, const texture::CutVertex& v) const {
-    if (v.triangle == triangle) return v.barycentric;
-    std::array<double, 3> out{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (v.barycentric[k] == 0) continue;
-      const mesh::Triangle& corners = surface_.corners[triangle];
-      const auto at = std::ranges::find(corners, surface_.corners[v.triangle][k]) - corners.begin();
-      out.at(static_cast<std::size_t>(at)) = v.barycentric[k];
-    }
-    return out;
   }
 
   // The first copy of each input vertex that a rider needs and that is delivered already.

@@ -67,12 +67,8 @@ void add_smooth_normals(const Surface& surface, const texture::CutMesh& cut, con
   for (std::size_t v = 0; v < cut.vertices.size(); ++v) {
     const OutputVertex o = delivery.of_cut_vertex[v];
     if (!lacking[o.primitive]) continue;
-    const texture::CutVertex& vertex = cut.vertices[v];
-    Vec3d sum;
-    for (std::size_t k = 0; k < 3; ++k) {
-      sum += normals[surface.mesh.triangles[vertex.triangle][k]] * vertex.barycentric[k];
-    }
-    set_vector(*find(delivery.primitives[o.primitive], "NORMAL"), o.vertex, unit(sum));
+    const Vec3d normal = texture::interpolated(normals, surface.mesh.triangles, cut.vertices[v]);
+    set_vector(*find(delivery.primitives[o.primitive], "NORMAL"), o.vertex, unit(normal));
   }
 }
 

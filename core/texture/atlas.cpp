@@ -7,14 +7,22 @@
 #include "core/texture/place.h"
 
 namespace orbis::texture {
-namespace {
 
-Vec3d position(const AtlasComponent& component, const CutVertex& vertex) {
-  Vec3d sum;
-  for (std::size_t k = 0; k < 3; ++k)
-    sum += Vec3d(component.positions[component.triangles[vertex.triangle][k]]) * vertex.barycentric[k];
-  return sum;
+std::array<double, 3> weights_on(std::uint32_t triangle, std::span<const mesh::Triangle> triangles,
+                                 const CutVertex& v) {
+  if (v.triangle == triangle) return v.barycentric;
+  std::array<double, 3> out{};
+  const mesh::Triangle &here = triangles[triangle], &there = triangles[v.triangle];
+  for (std::size_t j = 0; j < 3; ++j) {
+    if (v.barycentric[j] == 0) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (here[i] == there[j]) out[i] = v.barycentric[j];
+    }
+  }
+  return out;
 }
+
+namespace {
 
 std::vector<bool> shown_charts(const FlatCharts& charts, std::size_t delivered) {
   std::vector<bool> out(charts.mesh.charts.size(), false);
@@ -37,7 +45,7 @@ FlatCharts lay_flat(const AtlasComponent& component, Progress& progress) {
   charts.is_shown = shown_charts(charts, component.delivered);
   std::vector<Vec3d> positions(charts.places.size());
   for (std::size_t v = 0; v < charts.mesh.vertices.size(); ++v)
-    positions[charts.place_of[v]] = position(component, charts.mesh.vertices[v]);
+    positions[charts.place_of[v]] = interpolated(component.positions, component.triangles, charts.mesh.vertices[v]);
   flatten(charts, positions, component.delivered);
   return charts;
 }

@@ -30,6 +30,20 @@ struct CutVertex {
                        // or a number after them
 };
 
+// Positions, normals or the like at the surface's vertices, at a cut vertex: sum b_i values_i.
+template <class Values>
+[[nodiscard]] Vec3d interpolated(const Values& values, std::span<const mesh::Triangle> triangles, const CutVertex& v) {
+  Vec3d sum;
+  for (std::size_t k = 0; k < 3; ++k) sum += Vec3d(values[triangles[v.triangle][k]]) * v.barycentric[k];
+  return sum;
+}
+
+// The weights of a cut vertex on the corners of a triangle that it lies on, be it that of a neighbour: a point on an
+// edge or at a corner may be described from the other side.
+//   triangles  input triangles; those at an edge or a corner share its vertices
+[[nodiscard]] std::array<double, 3> weights_on(std::uint32_t triangle, std::span<const mesh::Triangle> triangles,
+                                               const CutVertex& v);
+
 // A chart fills a rectangle of whole texels: every texel in it belongs to exactly one point of the surface.
 struct Chart {
   std::uint32_t component = 0;                       // of the surface

@@ -12,12 +12,7 @@ namespace {
 Shape model_shape(const mesh::TriangleMesh& surface, const CutMesh& mesh) {
   std::vector<Vec3d> positions;
   positions.reserve(mesh.vertices.size());
-  for (const CutVertex& v : mesh.vertices) {
-    Vec3d sum;
-    for (std::size_t k = 0; k < 3; ++k)
-      sum += Vec3d(surface.positions[surface.triangles[v.triangle][k]]) * v.barycentric[k];
-    positions.push_back(sum);
-  }
+  for (const CutVertex& v : mesh.vertices) positions.push_back(interpolated(surface.positions, surface.triangles, v));
   std::vector<Vec3d> normals = smooth_normals(mesh, positions);
   return {mesh, std::move(positions), std::move(normals)};
 }

@@ -26,12 +26,7 @@ double percentile(std::span<const Density> sorted, double total, double fraction
 std::vector<Vec3d> positions_of(const CutMesh& mesh, const mesh::TriangleMesh& surface) {
   std::vector<Vec3d> out;
   out.reserve(mesh.vertices.size());
-  for (const CutVertex& v : mesh.vertices) {
-    Vec3d sum;
-    for (std::size_t k = 0; k < 3; ++k)
-      sum += Vec3d(surface.positions[surface.triangles[v.triangle][k]]) * v.barycentric[k];
-    out.push_back(sum);
-  }
+  for (const CutVertex& v : mesh.vertices) out.push_back(interpolated(surface.positions, surface.triangles, v));
   return out;
 }
 

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <mutex>
 
@@ -77,27 +75,6 @@ public:
   [[nodiscard]] bool queue_full() const override { return is_full; }
   [[nodiscard]] std::chrono::seconds retry_after() const override { return std::chrono::seconds(7); }
   [[nodiscard]] std::string metrics() const override { return "orbis_jobs_queued 0\n"; }
-};
-
-// A directory of its own for each test, gone afterwards.
-class TemporaryDirectory {
-public:
-  TemporaryDirectory() {
-    std::string name = (std::filesystem::temp_directory_path() / "orbis-test-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary directory");
-    path = name;
-  }
-  ~TemporaryDirectory() { std::filesystem::remove_all(path); }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-
-  // A file with these contents.
-  [[nodiscard]] std::filesystem::path file(const std::string& name, const std::string& contents) const {
-    std::ofstream(path / name, std::ios::binary) << contents;
-    return path / name;
-  }
-
-  std::filesystem::path path;
 };
 
 } // namespace orbis::test

@@ -5,6 +5,7 @@
 #include "api/fake_service.h"
 #include "api/json.h"
 #include "api/router.h"
+#include "support/temporary_directory.h"
 
 using namespace orbis;
 using nlohmann::json;

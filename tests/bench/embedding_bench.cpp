@@ -14,15 +14,12 @@
 #include <cstdio>
 #include <ctime>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "bench/read_surface.h"
 #include "bench/reference_solver.h"
-#include "core/asset/asset.h"
-#include "core/mesh/topology.h"
-#include "core/mesh/weld.h"
 #include "core/sphere/certificate.h"
 #include "core/sphere/distortion.h"
 #include "core/sphere/embedding.h"
@@ -62,27 +59,6 @@ Arguments parse(int count, char** values) {
   return out;
 }
 
-mesh::TriangleMesh read_surface(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
-  const asset::Asset asset = asset::read_asset(std::as_bytes(std::span(bytes)), {}, {});
-  std::vector<Vec3f> positions;
-  std::vector<mesh::Triangle> triangles;
-  for (const asset::Primitive& p : asset.primitives) {
-    const auto first = static_cast<mesh::Index>(positions.size());
-    const std::vector<Vec3f> own = p.positions();
-    positions.insert(positions.end(), own.begin(), own.end());
-    for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3) {
-      triangles.push_back({first + p.indices[i], first + p.indices[i + 1], first + p.indices[i + 2]});
-    }
-  }
-  mesh::TriangleMesh mesh = mesh::weld(positions, triangles).mesh;
-  const mesh::Topology topology = mesh::classify(mesh);
-  if (!topology.is_sphere()) throw Error(ErrorCode::not_genus_zero, topology.refusal());
-  static_cast<void>(mesh::orient_consistently(mesh));
-  return mesh;
-}
-
 struct Run {
   sphere::Embedding embedding;
   double wall = 0, cpu = 0;
@@ -114,7 +90,7 @@ Run run_once(const mesh::TriangleMesh& mesh, const Options& options) {
 }
 
 nlohmann::ordered_json measure(const std::string& path, const Arguments& arguments) {
-  const mesh::TriangleMesh mesh = read_surface(path);
+  const mesh::TriangleMesh mesh = bench::read_surface(path);
   std::vector<Run> runs;
   for (int i = 0; i < arguments.runs; ++i) runs.push_back(run_once(mesh, arguments.options));
   std::ranges::sort(runs, {}, &Run::wall);

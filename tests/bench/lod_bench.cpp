@@ -7,17 +7,13 @@
 // of the surface that samples outside of the charts, in per cent.
 #include <cstdio>
 #include <ctime>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "core/asset/asset.h"
+#include "bench/read_surface.h"
 #include "core/lod/distance.h"
 #include "core/lod/simplify.h"
-#include "core/mesh/topology.h"
-#include "core/mesh/weld.h"
 #include "core/sphere/embedding.h"
 #include "core/sphere/snap.h"
 
@@ -25,32 +21,12 @@ using namespace orbis;
 
 namespace {
 
-mesh::TriangleMesh read_surface(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
-  const asset::Asset asset = asset::read_asset(std::as_bytes(std::span(bytes)), {}, {});
-  std::vector<Vec3f> positions;
-  std::vector<mesh::Triangle> triangles;
-  for (const asset::Primitive& p : asset.primitives) {
-    const auto first = static_cast<mesh::Index>(positions.size());
-    const std::vector<Vec3f> own = p.positions();
-    positions.insert(positions.end(), own.begin(), own.end());
-    for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3)
-      triangles.push_back({first + p.indices[i], first + p.indices[i + 1], first + p.indices[i + 2]});
-  }
-  mesh::TriangleMesh mesh = mesh::weld(positions, triangles).mesh;
-  const mesh::Topology topology = mesh::classify(mesh);
-  if (!topology.is_sphere()) throw Error(ErrorCode::not_genus_zero, topology.refusal());
-  static_cast<void>(mesh::orient_consistently(mesh));
-  return mesh;
-}
-
 double milliseconds_since(std::clock_t start) {
   return 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 void measure(const std::string& path, const std::vector<double>& ratios, std::uint32_t size) {
-  const mesh::TriangleMesh surface = read_surface(path);
+  const mesh::TriangleMesh surface = bench::read_surface(path);
   NoProgress progress;
   const sphere::Embedding embedding = sphere::embed_isometric(surface, Quality::standard, 0, progress);
   const sphere::Snapped snapped = sphere::snap(embedding.points, surface.triangles);

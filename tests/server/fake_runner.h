@@ -2,10 +2,8 @@
 #pragma once
 
 #include <condition_variable>
-#include <filesystem>
 #include <mutex>
 #include <random>
-#include <stdexcept>
 
 #include "server/file_writer.h"
 #include "server/job_runner.h"
@@ -88,19 +86,6 @@ private:
   std::condition_variable_any changed_;
   int started_ = 0;
   bool released_ = false;
-};
-
-class TemporaryDirectory {
-public:
-  TemporaryDirectory() {
-    std::string name = (std::filesystem::temp_directory_path() / "orbis-test-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary directory");
-    path = name;
-  }
-  ~TemporaryDirectory() { std::filesystem::remove_all(path); }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-  std::filesystem::path path;
 };
 
 } // namespace orbis::test

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "server/config.h"
-#include "server/fake_runner.h"
+#include "support/temporary_directory.h"
 
 using namespace orbis;
 using server::Config;

@@ -10,6 +10,7 @@
 #include "server/fake_runner.h"
 #include "server/http_server.h"
 #include "server/scheduler.h"
+#include "support/temporary_directory.h"
 
 using namespace orbis;
 using nlohmann::json;

@@ -7,6 +7,7 @@
 #include "server/fake_runner.h"
 #include "server/job_files.h"
 #include "server/scheduler.h"
+#include "support/temporary_directory.h"
 
 using namespace orbis;
 using api::JobState;

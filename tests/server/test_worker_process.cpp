@@ -7,8 +7,8 @@
 #include <sstream>
 #include <thread>
 
-#include "server/fake_runner.h"
 #include "server/worker_process.h"
+#include "support/temporary_directory.h"
 
 using namespace orbis;
 using server::JobOutcome;
