@@ -8,12 +8,12 @@
 namespace orbis::api {
 namespace {
 
-// Options are numbers in JSON where they are numbers in C++: what reads as one is one, but for a list of one.
+// Options are numbers and truth values in JSON where they are in C++: what reads as one is one, but for a list of one.
 Json option_value(const Options& options, std::string_view name) {
   const std::string text = get_option(options, name);
   if (name == "lods") return text;
   const Json parsed = Json::parse(text, nullptr, false);
-  return parsed.is_number() ? parsed : Json(text);
+  return parsed.is_number() || parsed.is_boolean() ? parsed : Json(text);
 }
 
 template <class T> Json optional_value(const std::optional<T>& value) { return value ? Json(*value) : Json(nullptr); }

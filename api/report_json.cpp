@@ -95,6 +95,7 @@ Json component_json(const ComponentReport& c) {
            {"handle_cut_length", c.handle_cut_length},
            {"symmetric_dirichlet", c.distortion.symmetric_dirichlet},
            {"quasi_conformal_mean", c.distortion.quasi_conformal_mean},
+           {"remesh_triangles", c.remesh_triangles},
            {"certified", c.certified},
            {"problem", nullptr}};
   if (c.problem) {
@@ -157,6 +158,17 @@ Json level_json(const Report::Level& level) {
           {"lost_components", level.lost_components}};
 }
 
+Json remesh_json(const std::optional<Report::Remesh>& r) {
+  if (!r) return nullptr;
+  return {{"components", r->components},
+          {"kept_components", r->kept_components},
+          {"triangles", r->triangles},
+          {"vertices", r->vertices},
+          {"mean_distance", r->mean_distance},
+          {"mean_distance_from_input", r->mean_distance_from_input},
+          {"hausdorff_distance", r->hausdorff_distance}};
+}
+
 Json vector_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 Json map_json(const Report::BakedMap& m) {
@@ -213,6 +225,7 @@ Json to_json(const Report& report) {
           {"distortion", distortion_json(report.distortion)},
           {"atlas", atlas_json(report.atlas)},
           {"levels", std::move(levels)},
+          {"remesh", remesh_json(report.remesh)},
           {"maps", std::move(maps)},
           {"output", {{"triangles", report.output_triangles}, {"vertices", report.output_vertices}}},
           {"certificate", certificate_json(report.certificate)},

@@ -10,7 +10,7 @@
 namespace orbis {
 namespace {
 
-constexpr std::array<OptionInfo, 16> table{{
+constexpr std::array<OptionInfo, 18> table{{
     {"topology", "repair | strict", "repair",
      "repair: whatever has triangles is parametrized; strict: anything but one closed component of genus 0 is refused"},
     {"weld_tolerance", "a number, 0 or more", "0",
@@ -41,6 +41,10 @@ constexpr std::array<OptionInfo, 16> table{{
     {"compression", "none | draco", "none", "how the geometry is stored in the result"},
     {"lods", "a list such as 0.25,0.05,0.01: parts of the triangles, their numbers, or deviation:0.1", "",
      "levels of detail on the same atlas, from fine to coarse; deviation: in per cent of the model's diagonal"},
+    {"remesh", "none | octahedral:N | icosahedral:N, N from 1 to 8", "none",
+     "a semi-regular triangulation in place of the input's: a regular polyhedron divided N times, sampled from the "
+     "surface through its sphere"},
+    {"sphere_morph", "true | false", "false", "a morph target 'sphere' that takes each component to its sphere"},
     {"threads", "0 to 256", "0", "threads of the embedding, 0 for as many as the machine has; the result is the same"},
 }};
 
@@ -117,6 +121,28 @@ std::vector<LodTarget> lod_targets(std::string_view name, std::string_view list)
   return targets;
 }
 
+constexpr std::array<std::string_view, 2> truths{"false", "true"};
+constexpr std::array<std::string_view, 3> remesh_bases{"none", "octahedral", "icosahedral"};
+
+// "none" or "icosahedral:5".
+RemeshTarget remesh_target(std::string_view name, std::string_view text) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos) {
+    if (text != remesh_bases[0]) refuse(name, text);
+    return {};
+  }
+  for (std::size_t i = 1; i < remesh_bases.size(); ++i) {
+    if (text.substr(0, colon) != remesh_bases[i]) continue;
+    const std::string_view digits = text.substr(colon + 1);
+    std::uint32_t times = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), times);
+    const bool is_number = error == std::errc{} && end == digits.data() + digits.size();
+    if (!is_number || times < 1 || times > most_remesh_times) refuse(name, text);
+    return {static_cast<RemeshTarget::Base>(i), times};
+  }
+  refuse(name, text);
+}
+
 template <class E, std::size_t N> std::string text_of(E value, const std::array<std::string_view, N>& names) {
   return std::string(names.at(static_cast<std::size_t>(value)));
 }
@@ -135,6 +161,12 @@ std::string text_of(const std::vector<LodTarget>& targets) {
     if (target.kind == LodTarget::Kind::deviation) text += "deviation:";
     text += text_of(target.value);
   }
+  return text;
+}
+
+std::string text_of(const RemeshTarget& target) {
+  std::string text = text_of(target.base, remesh_bases);
+  if (target.base != RemeshTarget::Base::none) text.append(":").append(std::to_string(target.times));
   return text;
 }
 
@@ -208,6 +240,10 @@ void set_option(Options& options, std::string_view name, std::string_view value)
     options.compression = choice<Compression>(name, value, compressions);
   } else if (name == "lods") {
     options.lods = lod_targets(name, value);
+  } else if (name == "remesh") {
+    options.remesh = remesh_target(name, value);
+  } else if (name == "sphere_morph") {
+    options.sphere_morph = choice<int>(name, value, truths) == 1;
   } else if (name == "threads") {
     options.threads = number<std::uint32_t>(name, value, 0, 256);
   } else {
@@ -231,6 +267,8 @@ std::string get_option(const Options& options, std::string_view name) {
   if (name == "normal_bits") return std::to_string(options.normal_bits);
   if (name == "compression") return text_of(options.compression, compressions);
   if (name == "lods") return text_of(options.lods);
+  if (name == "remesh") return text_of(options.remesh);
+  if (name == "sphere_morph") return text_of(options.sphere_morph, truths);
   if (name == "threads") return std::to_string(options.threads);
   refuse(name, "");
 }

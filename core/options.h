@@ -29,6 +29,14 @@ struct LodTarget {
 };
 inline constexpr std::size_t most_lods = 8;
 
+// A semi-regular triangulation: a regular polyhedron whose triangles are divided into four, `times` times.
+struct RemeshTarget {
+  enum class Base { none, octahedral, icosahedral } base = Base::none; // none: the input's own triangles
+  std::uint32_t times = 0;
+  friend bool operator==(const RemeshTarget&, const RemeshTarget&) = default;
+};
+inline constexpr std::uint32_t most_remesh_times = 8;
+
 // What can be baked into the atlas. The first five take the place of the materials' textures.
 enum class Map : std::uint8_t {
   base_color,
@@ -77,6 +85,8 @@ struct Options {
   std::uint32_t normal_bits = 8; // 8 or 16 a channel, of the normal maps
   Compression compression = Compression::none;
   std::vector<LodTarget> lods; // levels of detail beside the full surface, from fine to coarse
+  RemeshTarget remesh;         // of the largest component; smaller ones get triangles of about the same size
+  bool sphere_morph = false;   // a morph target that takes each component to its sphere
   std::uint32_t threads = 0;   // 0: as many as the machine has; the result does not depend on it
 };
 

@@ -10,7 +10,9 @@
 #include "core/steps/levels.h"
 #include "core/steps/measure.h"
 #include "core/steps/paint.h"
+#include "core/steps/remesh.h"
 #include "core/steps/snap_and_cut.h"
+#include "core/steps/sphere_morph.h"
 #include "core/steps/stage_clock.h"
 #include "core/steps/summary.h"
 #include "core/steps/surface.h"
@@ -41,7 +43,7 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   report.options = request.options;
 
   clock.report(Stage::decode, 0, 1);
-  const asset::Asset asset = asset::read_asset(request.model, request.files, limits);
+  asset::Asset asset = asset::read_asset(request.model, request.files, limits);
   describe_input(asset, report);
 
   clock.report(Stage::topology, 0, 1);
@@ -51,6 +53,7 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   std::vector<Vec3d> points = embed(surface, request.options, clock, report);
 
   clock.report(Stage::atlas, 0, 1);
+  const std::optional<RemeshSource> source = resample(asset, surface, points, limits, clock, report);
   const CutSphere sphere = snap_and_cut(asset, surface, points, request.options, clock, report);
   const std::vector<Vec3f> delivered = deliverable(sphere.points);
   report.distortion = measure(surface, delivered, report);
@@ -62,9 +65,17 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   std::vector<DetailLevel> levels = make_levels(asset, surface, sphere.cut, clock, report);
 
   clock.report(Stage::bake, 0, 1);
-  BakedMaps maps = bake_maps(request, limits, asset, surface, sphere.cut, delivery, levels, clock, report);
+  const SurfaceInAtlas shown{asset, surface, sphere.cut};
+  texture::CutMesh overlay; // what the maps are baked from, where that is not what is delivered
+  if (source) overlay = source_in_atlas(*source, surface, points, sphere.cut, request.options.threads);
+  const SurfaceInAtlas baked = source ? SurfaceInAtlas{source->asset, source->surface, overlay} : shown;
+  BakedMaps maps = bake_maps(request, limits, baked, shown, delivery, levels, clock, report);
 
   clock.report(Stage::encode, 0, 1);
+  if (request.options.sphere_morph) {
+    add_sphere_morph(asset, surface, delivery);
+    for (DetailLevel& level : levels) add_sphere_morph(asset, surface, level.delivery);
+  }
   result.preview_png = preview(surface, sphere.cut, maps.pages);
   result.atlas_png = atlas_picture(maps, request.options);
   result.maps = std::move(maps.files);

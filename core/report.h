@@ -51,6 +51,7 @@ struct ComponentReport {
   std::uint64_t turned_triangles = 0, crack_triangles = 0, cap_triangles = 0;
   std::uint64_t handles = 0, handle_cut_edges = 0;
   double handle_cut_length = 0;
+  std::uint64_t remesh_triangles = 0, remesh_vertices = 0; // what took its place; 0: it was not remeshed
   sphere::Distortion distortion; // of the delivered triangles, scaled to their part of the sphere
   bool certified = false;
   std::optional<Note> problem; // why it has no parametrization; its triangles are delivered as they came
@@ -97,6 +98,14 @@ struct Report {
     std::uint64_t lost_components = 0;
   };
   std::vector<Level> levels;
+  // What options.remesh did. Lengths are in per cent of the diagonal of the components that were remeshed.
+  struct Remesh {
+    std::uint64_t components = 0, kept_components = 0;      // kept: not remeshed, a note says why
+    std::uint64_t triangles = 0, vertices = 0;              // of those that were, before the atlas' cuts
+    double mean_distance = 0, mean_distance_from_input = 0; // of its points from the input, and the other way
+    double hausdorff_distance = 0;
+  };
+  std::optional<Remesh> remesh;
   // The images that were baked, all of the texture coordinates that the result calls the atlas'.
   struct BakedMap {
     std::string name; // of the file: "normal.png"; with several pages "normal-2.png"

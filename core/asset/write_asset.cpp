@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/asset/added_target.h"
 #include "core/asset/asset.h"
 #include "core/asset/draco_encoder.h"
 #include "core/asset/extensions.h"
@@ -254,6 +255,7 @@ Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, 
       users.push_back({old.mesh, old.primitive, look_of(primitives[i], first_texture)});
   }
   if (!users.empty()) assign_atlas(out.json, users);
+  describe_added_targets(out, asset, primitives);
   for (const NewLevel& level : levels)
     for (const NewPrimitive& primitive : level.primitives)
       if (!primitive.indices.empty()) check_new_primitive(primitive, images.size());

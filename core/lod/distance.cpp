@@ -56,18 +56,31 @@ std::vector<Vec3d> points_on(std::span<const Vec3d> positions, std::span<const m
   return out;
 }
 
+Distances measure_both(mesh::ThreadPool& threads, std::span<const Vec3d> positions,
+                       std::span<const mesh::Triangle> triangles, std::span<const Vec3d> full_positions,
+                       std::span<const mesh::Triangle> full_triangles, const TriangleTree& full_tree) {
+  const Sums to_full = measure(threads, full_tree, points_on(positions, triangles));
+  const TriangleTree own(positions, triangles);
+  const Sums from_full = measure(threads, own, points_on(full_positions, full_triangles));
+  const Sums from_vertices = measure(threads, own, full_positions);
+  return {to_full.sum, from_full.sum, std::max({to_full.largest, from_full.largest, from_vertices.largest})};
+}
+
 } // namespace
+
+Distances distances_between(std::span<const Vec3d> positions, std::span<const mesh::Triangle> triangles,
+                            std::span<const Vec3d> full_positions, std::span<const mesh::Triangle> full_triangles,
+                            mesh::ThreadPool& threads) {
+  const TriangleTree full_tree(full_positions, full_triangles);
+  return measure_both(threads, positions, triangles, full_positions, full_triangles, full_tree);
+}
 
 Ruler::Ruler(const FullSurface& full, mesh::ThreadPool& threads)
     : full_(full), threads_(threads), tree_(full.positions(), full.cut().triangles) {}
 
 Distances Ruler::distances(const Level& level) const {
   const std::vector<Vec3d> positions = scaled_positions(full_, level);
-  const Sums to_full = measure(threads_, tree_, points_on(positions, level.mesh.triangles));
-  const TriangleTree own(positions, level.mesh.triangles);
-  const Sums from_full = measure(threads_, own, points_on(full_.positions(), full_.cut().triangles));
-  const Sums from_vertices = measure(threads_, own, full_.positions());
-  return {to_full.sum, from_full.sum, std::max({to_full.largest, from_full.largest, from_vertices.largest})};
+  return measure_both(threads_, positions, level.mesh.triangles, full_.positions(), full_.cut().triangles, tree_);
 }
 
 std::optional<Place> Ruler::find(const Level& level, std::uint32_t triangle, const Uv& uv) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "core/lod/full_surface.h"
 #include "core/lod/simplify.h"
@@ -10,12 +11,18 @@
 
 namespace orbis::lod {
 
-// Of points spread evenly over the surfaces, as fractions of the bounding box's diagonal.
+// Of points spread evenly over the surfaces. A Ruler's are fractions of the bounding box's diagonal.
 struct Distances {
   double to_full = 0;   // mean distance of the level's points from the full surface
   double from_full = 0; // and of the full surface's from the level
   double hausdorff = 0; // the largest in either direction, the full surface's vertices among the points
 };
+
+// Of a surface from another one, which is called full: 20,000 points spread by area over each, and all vertices of the
+// full one. Positions in the same units; each surface has at least one triangle.
+[[nodiscard]] Distances distances_between(std::span<const Vec3d> positions, std::span<const mesh::Triangle> triangles,
+                                          std::span<const Vec3d> full_positions,
+                                          std::span<const mesh::Triangle> full_triangles, mesh::ThreadPool& threads);
 
 // The difference between a level's point and the full surface's point of the same texel, over the level's surface.
 struct TextureDeviation {

@@ -57,6 +57,13 @@ texture::Box box_of(const std::vector<Vec3f>& positions) {
   return box;
 }
 
+std::vector<Vec2f> uv_of(const texture::CutMesh& cut) {
+  std::vector<Vec2f> out;
+  out.reserve(cut.vertices.size());
+  for (const texture::CutVertex& v : cut.vertices) out.push_back(v.uv);
+  return out;
+}
+
 // For parts of a stage that would report on themselves.
 class OnlyCancellation final : public Progress {
 public:
@@ -70,25 +77,19 @@ private:
 
 class Baker {
 public:
-  Baker(const Request& request, const Limits& limits, const asset::Asset& asset, const Surface& surface,
-        const texture::CutMesh& cut, Delivery& delivery, std::span<DetailLevel> levels, Progress& progress,
-        Report& report)
-      : request_(request), limits_(limits), asset_(asset), surface_(surface), cut_(cut), delivery_(delivery),
-        levels_(levels), progress_(progress), report_(report), pool_(request.options.threads),
-        values_(asset, surface, cut, pool_) {
-    for (std::size_t t = 0; t < cut.triangles.size(); ++t) primitive_of_.push_back(values_.primitive(t));
-    for (const texture::CutVertex& v : cut.vertices) uv_.push_back(v.uv);
+  Baker(const Request& request, const Limits& limits, const SurfaceInAtlas& from, const SurfaceInAtlas& shown,
+        Delivery& delivery, std::span<DetailLevel> levels, Progress& progress, Report& report)
+      : request_(request), limits_(limits), asset_(from.asset), surface_(from.surface), cut_(from.cut), shown_(shown),
+        delivery_(delivery), levels_(levels), progress_(progress), report_(report), pool_(request.options.threads),
+        values_(from.asset, from.surface, from.cut, pool_), uv_(uv_of(cut_)) {
+    for (std::size_t t = 0; t < cut_.triangles.size(); ++t) primitive_of_.push_back(values_.primitive(t));
   }
 
   BakedMaps run() {
     plan();
     for (page_ = 0; page_ < cut_.pages.size(); ++page_) {
       step(0);
-      std::vector<std::uint32_t> shown;
-      for (std::uint32_t t = 0; t < cut_.triangles.size(); ++t) {
-        if (cut_.page_of(t) == page_) shown.push_back(t);
-      }
-      values_.show(std::move(shown));
+      values_.show(triangles_on_page(cut_));
       const texture::Page& size = cut_.pages[page_];
       map_.emplace(page_mesh(), size.width, size.height, pool_);
       bake_base_color();
@@ -121,6 +122,13 @@ private:
   [[nodiscard]] texture::PageMesh page_mesh() const { return {uv_, cut_.triangles, values_.shown()}; }
   [[nodiscard]] bool on_page(std::size_t primitive) const {
     return !delivery_.primitives[primitive].indices.empty() && delivery_.page_of[primitive] == page_;
+  }
+  [[nodiscard]] std::vector<std::uint32_t> triangles_on_page(const texture::CutMesh& cut) const {
+    std::vector<std::uint32_t> out;
+    for (std::uint32_t t = 0; t < cut.triangles.size(); ++t) {
+      if (cut.page_of(t) == page_) out.push_back(t);
+    }
+    return out;
   }
   [[nodiscard]] SlotTextures on_page(const SlotTextures& textures) const {
     SlotTextures out(textures.size());
@@ -188,7 +196,7 @@ private:
 
   Image painted() {
     OnlyCancellation part(progress_);
-    return paint(uploaded_, cut_, page_, part);
+    return paint(uploaded_, shown_.cut, page_, part);
   }
 
   // Occlusion is stored in red, roughness in green, metalness in blue: one image for both where both are there.
@@ -268,13 +276,25 @@ private:
 
     if (objects) add_normals("object_normal", texture::bake_normals(*map_, source, nullptr, pool_), false);
     if (!any(wanted)) return;
-    const TangentFrames frames = add_tangent_frames(asset_, surface_, cut_, wanted, delivery_, report_);
-    const texture::FrameField field{&*map_, cut_.triangles, frames.normals, frames.tangents};
-    const std::uint32_t number = add_normals("normal", texture::bake_normals(*map_, source, &field, pool_), true);
+    const TangentFrames frames =
+        add_tangent_frames(shown_.asset, shown_.surface, shown_.cut, wanted, delivery_, report_);
+    const std::uint32_t number = add_normals("normal", bake_normals_in(frames, source), true);
     for (std::size_t p = 0; p < wanted.size(); ++p) {
       if (wanted[p]) delivery_.primitives[p].textures[TextureSlot::normal] = number;
     }
     if (!levels_.empty()) bake_normals_of_levels(source, wanted);
+  }
+
+  // In the frames of what is delivered, wherever the normals come from.
+  texture::Image16 bake_normals_in(const TangentFrames& frames, const texture::NormalSource& source) {
+    std::optional<texture::TexelMap> own; // of the delivered triangles, where the page's are others
+    const std::vector<Vec2f> uv = uv_of(shown_.cut);
+    const std::vector<std::uint32_t> on_page = triangles_on_page(shown_.cut);
+    if (&shown_.cut != &cut_) {
+      own.emplace(texture::PageMesh{uv, shown_.cut.triangles, on_page}, map_->width(), map_->height(), pool_);
+    }
+    const texture::FrameField field{own ? &*own : &*map_, shown_.cut.triangles, frames.normals, frames.tangents};
+    return texture::bake_normals(*map_, source, &field, pool_);
   }
 
   // One map for all levels, in the frames of the coarsest. Of a primitive that has nothing left there, each level has
@@ -288,12 +308,12 @@ private:
     }
     Report already_noted; // of the full surface
     for (DetailLevel& level : levels_) {
-      add_tangent_frames(asset_, surface_, level.level.mesh, apart, level.delivery, already_noted);
+      add_tangent_frames(shown_.asset, shown_.surface, level.level.mesh, apart, level.delivery, already_noted);
     }
     if (!any(shared)) return;
-    const SharedFrames frames(asset_, surface_, cut_, page_, shared, coarsest, *map_, pool_);
+    const SharedFrames frames(shown_.asset, shown_.surface, shown_.cut, page_, shared, coarsest, *map_, pool_);
     for (DetailLevel& level : levels_.first(levels_.size() - 1)) {
-      frames.give_to(asset_, surface_, level.level.mesh, level.delivery);
+      frames.give_to(shown_.asset, shown_.surface, level.level.mesh, level.delivery);
     }
     const texture::FrameField field = frames.field();
     const std::uint32_t number = add_normals("normal_lods", texture::bake_normals(*map_, source, &field, pool_), true);
@@ -388,6 +408,7 @@ private:
   const asset::Asset& asset_;
   const Surface& surface_;
   const texture::CutMesh& cut_;
+  SurfaceInAtlas shown_;
   Delivery& delivery_;
   std::span<DetailLevel> levels_;
   Progress& progress_;
@@ -417,10 +438,10 @@ std::vector<std::byte> atlas_picture(const BakedMaps& maps, const Options& optio
   return asset::encode_png(maps.pages.front(), Encoding::srgb, options.threads);
 }
 
-BakedMaps bake_maps(const Request& request, const Limits& limits, const asset::Asset& asset, const Surface& surface,
-                    const texture::CutMesh& cut, Delivery& delivery, std::span<DetailLevel> levels, Progress& progress,
+BakedMaps bake_maps(const Request& request, const Limits& limits, const SurfaceInAtlas& from,
+                    const SurfaceInAtlas& shown, Delivery& delivery, std::span<DetailLevel> levels, Progress& progress,
                     Report& report) {
-  return Baker(request, limits, asset, surface, cut, delivery, levels, progress, report).run();
+  return Baker(request, limits, from, shown, delivery, levels, progress, report).run();
 }
 
 } // namespace orbis

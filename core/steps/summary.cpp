@@ -16,8 +16,8 @@ Certified certified_in(const Report& report) {
   for (const ComponentReport& c : report.components) {
     if (c.problem) continue;
     ++out.components;
-    out.vertices += c.vertices;
-    out.triangles += c.triangles;
+    out.vertices += c.remesh_vertices > 0 ? c.remesh_vertices : c.vertices;
+    out.triangles += c.remesh_triangles > 0 ? c.remesh_triangles : c.triangles;
   }
   return out;
 }
