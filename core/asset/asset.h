@@ -126,6 +126,9 @@ struct NewPrimitive {
   std::map<TextureSlot, std::uint32_t> textures;
   // The base colour shows its image as it is: the material's base colour factor goes.
   bool plain_base_color = false;
+  // Triangles of the old primitive (its own vertex numbers) that go on without a place in the atlas: a primitive of
+  // their own behind the mesh's others, with the old attributes and the old material. Only beside `indices`.
+  std::vector<std::uint32_t> left_out;
 };
 
 // A coarser version of the new primitives.

@@ -80,6 +80,46 @@ Json with_geometry(Output& out, Json primitive, const NewPrimitive& source, Comp
   return primitive;
 }
 
+// The vertices that `indices` use, in their order, and the indices renumbered.
+NewPrimitive part_of(const Primitive& old, std::span<const std::uint32_t> indices) {
+  constexpr std::uint32_t unused = UINT32_MAX;
+  std::vector<std::uint32_t> number(old.vertex_count(), unused), vertices;
+  NewPrimitive out;
+  out.indices.reserve(indices.size());
+  for (const std::uint32_t v : indices) {
+    if (number[v] == unused) {
+      number[v] = static_cast<std::uint32_t>(vertices.size());
+      vertices.push_back(v);
+    }
+    out.indices.push_back(number[v]);
+  }
+  const auto take = [&](const Attribute& a) {
+    Attribute taken = a;
+    const std::size_t size = a.components * size_of(a.type);
+    taken.data.clear();
+    taken.data.reserve(vertices.size() * size);
+    for (const std::uint32_t v : vertices) {
+      const auto first = a.data.begin() + static_cast<std::ptrdiff_t>(v * size);
+      taken.data.insert(taken.data.end(), first, first + static_cast<std::ptrdiff_t>(size));
+    }
+    return taken;
+  };
+  std::transform(old.attributes.begin(), old.attributes.end(), std::back_inserter(out.attributes), take);
+  for (const std::vector<Attribute>& target : old.targets) {
+    out.targets.emplace_back();
+    std::transform(target.begin(), target.end(), std::back_inserter(out.targets.back()), take);
+  }
+  return out;
+}
+
+// Before the primitive itself is replaced: what is left out looks as it did.
+void append_left_out(Output& out, const Primitive& old, const NewPrimitive& source, Compression compression) {
+  if (source.left_out.empty()) return;
+  const Json as_it_was = out.json["meshes"][old.mesh]["primitives"][old.primitive];
+  Json primitive = with_geometry(out, as_it_was, part_of(old, source.left_out), compression);
+  out.json["meshes"][old.mesh]["primitives"].push_back(std::move(primitive));
+}
+
 void replace_primitive(Output& out, const Primitive& old, const NewPrimitive& source, Compression compression) {
   erase_extension(out.json["meshes"][old.mesh], "EXT_mesh_manifold");
   // A copy goes in, since views and accessors that are added may move the document's parts.
@@ -250,6 +290,7 @@ Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, 
     const Primitive& old = asset.primitives[i];
     if (primitives[i].indices.empty()) continue;
     check_new_primitive(primitives[i], images.size());
+    append_left_out(out, old, primitives[i], compression);
     replace_primitive(out, old, primitives[i], compression);
     if (!primitives[i].textures.empty())
       users.push_back({old.mesh, old.primitive, look_of(primitives[i], first_texture)});

@@ -183,6 +183,7 @@ void certify_file(std::span<const std::byte> glb, const asset::Asset& asset, con
     report.components[c.number].certified = true;
   }
   report.output_triangles = file.triangles.size();
+  for (const asset::NewPrimitive& p : delivery.primitives) report.output_triangles += p.left_out.size() / 3;
   report.output_vertices = file.sphere.size();
 }
 

@@ -18,12 +18,27 @@ public:
     }
     find_copies();
     for (const Rider& rider : surface_.riders) {
-      if (rider.twin == no_primitive && !delivery_.primitives[rider.primitive].indices.empty()) ride_alone(rider);
+      if (rider.twin != no_primitive || delivery_.primitives[rider.primitive].indices.empty()) continue;
+      if (has_place(rider)) {
+        ride_alone(rider);
+      } else {
+        leave_out(rider);
+      }
     }
     return std::move(extra_);
   }
 
 private:
+  static bool has_place(const Rider& rider) {
+    return std::ranges::any_of(rider.vertices, [](mesh::Index v) { return v != no_primitive; });
+  }
+
+  void leave_out(const Rider& rider) {
+    const mesh::Triangle corners = in_primitive(rider);
+    std::vector<std::uint32_t>& left_out = delivery_.primitives[rider.primitive].left_out;
+    left_out.insert(left_out.end(), corners.begin(), corners.end());
+  }
+
   OutputVertex add(std::uint32_t primitive, const VertexSource& source, const Vec3f& sphere, const Vec2f& uv) {
     std::vector<VertexSource>& sources = delivery_.sources[primitive];
     const OutputVertex at{primitive, static_cast<std::uint32_t>(sources.size())};
@@ -96,9 +111,7 @@ private:
   std::uint32_t place(const Rider& rider, std::size_t k) {
     const mesh::Triangle corners = in_primitive(rider);
     const VertexSource source{{corners[k], corners[k], corners[k]}, {1, 0, 0}};
-    const mesh::Index vertex = place_of(rider, k);
-    if (vertex == no_primitive) return add(rider.primitive, source, {}, {}).vertex;
-    const texture::CutVertex& there = cut_.vertices[cut_vertex_of(vertex)];
+    const texture::CutVertex& there = cut_.vertices[cut_vertex_of(place_of(rider, k))];
     return add(rider.primitive, source, sphere::from_grid(there.sphere), there.uv).vertex;
   }
 
@@ -107,7 +120,7 @@ private:
     for (std::size_t i = 0; i < 3; ++i) {
       if (rider.vertices[(k + i) % 3] != no_primitive) return rider.vertices[(k + i) % 3];
     }
-    return no_primitive;
+    throw Error(ErrorCode::internal, "a triangle without area has no place on the surface");
   }
 
   mesh::Index cut_vertex_of(mesh::Index surface_vertex) {

@@ -11,16 +11,16 @@ namespace orbis {
 // An output vertex that no cut vertex stands for.
 struct ExtraVertex {
   OutputVertex at;
-  Vec3f sphere{}; // (0, 0, 0) where there is no place on any sphere
+  Vec3f sphere{};
   Vec2f uv{};
 };
 
 // Appends the riders to the delivery's indices and sources, behind the triangles of the cut surface.
 //
 // A duplicate gets the pieces of its twin, with the same coordinates and the attributes of its own corners. A triangle
-// without area uses copies of its corners that are there, and gets the coordinates of the place where it lies. What
-// could not be parametrized gets none. A primitive with nothing else than the last two kinds stays as it was: it is not
-// written at all.
+// without area uses copies of its corners that are there, and gets the coordinates of the place where it lies. What has
+// no place on any sphere becomes the primitive's left_out: it goes on looking as it did. A primitive with nothing else
+// than the last two kinds stays as it was: it is not written at all.
 [[nodiscard]] std::vector<ExtraVertex> add_riders(const Surface& surface, const texture::CutMesh& cut,
                                                   Delivery& delivery);
 

@@ -1,11 +1,12 @@
 // corpus.mjs ORBIS DIR OUT [OPTIONS OF orbis run…]: runs every model below DIR through `orbis run` and writes OUT/corpus.tsv
-// and OUT/corpus.html, with the previews beside them. Exits 1 where a model crashed the program or hung, or got an answer
-// that names no reason.
+// and OUT/corpus.html, with the previews beside them. Exits 1 where a model crashed the program or hung, got an answer
+// that names no reason, or a result that the Khronos validator has something to say about.
 import {spawn} from 'node:child_process'
 import fs from 'node:fs'
 import os from 'node:os'
 import path from 'node:path'
 import {externalUris} from '../e2e/external_uris.mjs'
+import {complaints} from '../e2e/validate.mjs'
 
 const [orbis, folder, out, ...options] = process.argv.slice(2)
 const limit = 300 // seconds for one model
@@ -80,10 +81,10 @@ const sum = (value) => (value && typeof value === 'object'
   ? Object.values(value).filter(Number.isFinite).reduce((a, b) => a + b, 0)
   : value)
 
-function describe(name, result, report, seconds) {
+function describe(name, result, report, invalid, seconds) {
   const problem = parse(result.messages)
-  const outcome = result.hung ? 'HUNG' : result.signal ? 'CRASHED' : result.status === 0 ? (report?.partial ? 'partial' : 'ok')
-    : result.status === 2 ? 'refused' : 'FAILED'
+  const outcome = result.hung ? 'HUNG' : result.signal ? 'CRASHED' : invalid.length > 0 ? 'INVALID'
+    : result.status === 0 ? (report?.partial ? 'partial' : 'ok') : result.status === 2 ? 'refused' : 'FAILED'
   return {
     model: name,
     result: outcome,
@@ -97,10 +98,11 @@ function describe(name, result, report, seconds) {
     conformal: at(report, 'distortion', 'quasi_conformal_mean'),
     used: at(report, 'atlas', 'utilisation'),
     seconds: report ? report.timing.wall_ms / 1000 : seconds,
+    cpu: report ? report.timing.cpu_ms / 1000 : undefined,
     megabytes: report ? report.timing.peak_rss_bytes / 2 ** 20 : undefined,
     notes: report?.notes?.map(({code}) => code).filter((code, i, all) => all.indexOf(code) === i).join(' '),
     problem: problem ? `${problem.status} ${problem.type.replace('/problems/', '')}: ${problem.detail}`
-      : result.status === 0 ? '' : result.messages.trim(),
+      : result.status === 0 ? invalid.join('; ') : result.messages.trim(),
   }
 }
 
@@ -109,9 +111,12 @@ async function process_model(model, number) {
   const scratch = fs.mkdtempSync(path.join(os.tmpdir(), 'orbis-corpus-'))
   const reportFile = path.join(scratch, 'report.json')
   const started = Date.now()
-  const result = await run(['run', model, '-o', path.join(scratch, 'result.glb'), '--report', reportFile,
-    '--preview', path.join(out, picture), ...filesOf(model), ...options])
-  const row = describe(path.relative(folder, model), result, readJson(reportFile), (Date.now() - started) / 1000)
+  const made = path.join(scratch, 'result.glb')
+  const result = await run(['run', model, '-o', made, '--report', reportFile, '--preview', path.join(out, picture),
+    ...filesOf(model), ...options])
+  const seconds = (Date.now() - started) / 1000
+  const invalid = result.status === 0 ? await complaints(made, model) : []
+  const row = describe(path.relative(folder, model), result, readJson(reportFile), invalid, seconds)
   fs.rmSync(scratch, {recursive: true})
   return {...row, picture: fs.existsSync(path.join(out, picture)) ? picture : ''}
 }
@@ -141,7 +146,7 @@ function html(rows) {
   body { font: 14px/1.4 system-ui, sans-serif; margin: 1.5rem; color: #16232b; }
   table { border-collapse: collapse; } th, td { padding: .25rem .5rem; border-bottom: 1px solid #c7d3da; text-align: left; vertical-align: top; }
   th { position: sticky; top: 0; background: #fff; } .number { text-align: right; font-variant-numeric: tabular-nums; }
-  img { width: 200px; display: block; } .refused { color: #6b5900; } .partial { color: #2a6f97; } .HUNG, .CRASHED, .FAILED { color: #a4243b; font-weight: 600; }
+  img { width: 200px; display: block; } .refused { color: #6b5900; } .partial { color: #2a6f97; } .HUNG, .CRASHED, .INVALID, .FAILED { color: #a4243b; font-weight: 600; }
   td:last-child { min-width: 22rem; }
 </style></head><body>
 <h1>${rows.length} models</h1><p>${Object.entries(counts).map(([result, n]) => `${n} ${result}`).join(', ')}</p>

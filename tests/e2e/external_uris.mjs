@@ -4,15 +4,16 @@ import {fileURLToPath} from 'node:url'
 
 export function externalUris(file) {
   const bytes = fs.readFileSync(file)
-  const isGlb = bytes.toString('latin1', 0, 4) === 'glTF'
+  const isGlb = bytes.toString('latin1', 0, 4) === 'glTF' && bytes.length >= 20
   const text = isGlb ? bytes.toString('utf8', 20, 20 + bytes.readUInt32LE(12)) : bytes.toString('utf8')
-  let document = {}
+  let document = null
   try {
     document = JSON.parse(text)
   } catch {
     // A broken file names nothing.
   }
-  return [...(document.buffers ?? []), ...(document.images ?? [])].map(({uri}) => uri)
+  const list = (value) => (Array.isArray(value) ? value : [])
+  return [...list(document?.buffers), ...list(document?.images)].map((part) => part?.uri)
     .filter((uri) => typeof uri === 'string' && !uri.startsWith('data:'))
 }
 

@@ -75,7 +75,7 @@ for (const model of models.filter((model) => model.includes(pattern))) {
     tell('skipped', name, refused)
     continue
   }
-  await test(`gltf-transform reads and re-writes ${name}`, () => roundTrip(model, result))
+  await test(`gltf-transform finds the same surface, and re-writes ${name}`, () => roundTrip(model, result))
   await test(`three.js shows the same ${name}`, async () => {
     const {covered, overlap, difference, picture} = await stage.compare(model, result)
     fs.writeFileSync(path.join(out, `${path.basename(path.dirname(model))}-${name}.png`), picture)

@@ -175,12 +175,46 @@ TEST_CASE("a component without extent is told, and the rest comes back") {
   CHECK_FALSE(result.report.components[0].problem.has_value());
   REQUIRE(result.report.components[1].problem.has_value());
   CHECK(result.report.components[1].problem->code == "no-extent");
+  // The primitive goes on as two: what has a place on a sphere, and what has none.
   const asset::Asset out = asset::read_asset(result.glb, {}, {});
-  const asset::Attribute& sphere = *out.primitives[0].find("_SPHERE");
-  std::size_t without_place = 0;
-  for (std::size_t v = 0; v < sphere.count(); ++v)
-    without_place += sphere.get(v, 0) == 0 && sphere.get(v, 1) == 0 && sphere.get(v, 2) == 0 ? 1 : 0;
-  CHECK(without_place == 4);
+  REQUIRE(out.primitives.size() == 2);
+  CHECK(out.primitives[0].find("_SPHERE") != nullptr);
+  CHECK(out.primitives[1].find("_SPHERE") == nullptr);
+  CHECK(out.primitives[1].indices == asset::read_asset(glb_of(point), {}, {}).primitives[0].indices);
+  for (const Vec3f& p : out.primitives[1].positions()) CHECK(p == Vec3f{7, 7, 7});
+  CHECK(result.report.output_triangles >= result.report.input_triangles);
+}
+
+TEST_CASE("what is left out keeps its material, its texture coordinates and its morph targets") {
+  // Its vertices came back as part of the material's atlas once, all of one texel's colour.
+  GlbOfMesh glb;
+  mesh::TriangleMesh point = shapes::tetrahedron();
+  for (Vec3f& p : point.positions) p = {7, 7, 7};
+  const mesh::TriangleMesh m = shapes::joined(shapes::bumpy_sphere(1), point);
+  nlohmann::json attributes;
+  attributes["POSITION"] = glb.add_positions(m.positions);
+  attributes["_TEMPERATURE"] = glb.add_positions(m.positions);
+  glb.document()["materials"] = nlohmann::json::parse(R"([{"name": "skin", "doubleSided": true}])");
+  glb.document()["meshes"] = one_primitive(attributes, glb.add_indices(m.triangles));
+  nlohmann::json& primitive = glb.document()["meshes"][0]["primitives"][0];
+  primitive["material"] = 0;
+  primitive["targets"] = nlohmann::json::array({{{"POSITION", glb.add_positions(m.positions)}}});
+  one_node(glb.document());
+  const Result result = run(glb.bytes());
+
+  const asset::Asset out = asset::read_asset(result.glb, {}, {});
+  REQUIRE(out.primitives.size() == 2);
+  const asset::Primitive& left_out = out.primitives[1];
+  REQUIRE(left_out.vertex_count() == 4);
+  REQUIRE(left_out.targets.size() == 1);
+  CHECK(left_out.targets[0].at(0).count() == 4);
+  const asset::Attribute* temperature = left_out.find("_TEMPERATURE");
+  REQUIRE(temperature != nullptr);
+  CHECK(temperature->get(3, 2) == 7);
+  CHECK(out.primitives[0].material != left_out.material);
+  CHECK(left_out.material.has_value());
+  CHECK_FALSE(asset::names_texture(out, left_out, asset::TextureSlot::base_color));
+  CHECK(asset::names_texture(out, out.primitives[0], asset::TextureSlot::base_color));
 }
 
 TEST_CASE("topology=strict refuses what would have to be repaired, and takes what would not") {
