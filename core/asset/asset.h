@@ -128,7 +128,7 @@ struct NewPrimitive {
   bool plain_base_color = false;
   // Triangles of the old primitive (its own vertex numbers) that go on without a place in the atlas: a primitive of
   // their own behind the mesh's others, with the old attributes and the old material. Only beside `indices`.
-  std::vector<std::uint32_t> left_out;
+  std::vector<std::uint32_t> left_out{};
 };
 
 // A coarser version of the new primitives.

@@ -13,6 +13,7 @@ namespace {
 void check_version(const JsonReader& reader, const Json& document) {
   const std::string& version = reader.required_text(reader.required_object(document, "asset"), "version");
   const std::string* least = reader.text(document.at("asset"), "minVersion");
+  if (version.empty()) reader.fail(document.at("asset"), "version", "is empty; glTF 2.0 files say \"2.0\"");
   if (version.substr(0, 2) != "2." || (least && *least != "2.0")) {
     throw Error(ErrorCode::unsupported_format,
                 "the file is glTF " + shown(least ? *least : version) +

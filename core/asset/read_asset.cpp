@@ -5,6 +5,7 @@
 #include "core/asset/extensions.h"
 #include "core/asset/glb.h"
 #include "core/asset/load_document.h"
+#include "core/asset/mend_attributes.h"
 #include "core/asset/read_draco_file.h"
 #include "core/asset/read_obj.h"
 #include "core/asset/read_ply.h"
@@ -118,7 +119,10 @@ Asset read_asset(std::span<const std::byte> bytes, const Attachments& attachment
   Asset asset = format == ModelFormat::zip
                     ? read_zip(bytes, attachments, limits)
                     : read_model(bytes, format, ModelFiles(attachments, !attachments.empty()), limits);
-  for (const Primitive& primitive : asset.primitives) check_positions(primitive);
+  for (Primitive& primitive : asset.primitives) {
+    check_positions(primitive);
+    mend_attributes(primitive, asset.notes);
+  }
   const bool has_triangles = std::any_of(asset.primitives.begin(), asset.primitives.end(),
                                          [](const Primitive& primitive) { return !primitive.indices.empty(); });
   if (!has_triangles) {

@@ -1,39 +1,50 @@
-// The page: post a model, follow the job, show what came back. The contract is /openapi.json; nothing else is known here.
+// The page: post a model, follow the job, show what came back. The options are those of the contract, /openapi.json.
 
 const $ = (id) => document.getElementById(id);
 const form = $("form"), job = $("job");
 let files = [];
 let current = null; // the address of the job that is shown
 
-// ---- Options: one field for each option of the contract.
+// ---- Options: one field for each option of the contract, those that are asked for most in front.
+
+const foremost = ["objective", "quality", "texture", "texture_size"];
+
+function fieldFor(name, schema) {
+  const choices = schema.type === "boolean" ? ["false", "true"] : schema.enum;
+  const field = document.createElement(choices ? "select" : "input");
+  field.name = name;
+  field.title = schema.description ?? "";
+  for (const value of choices ?? []) field.append(new Option(value === "false" ? "no" : value === "true" ? "yes" : value, value));
+  if (!choices && schema.type === "string") {
+    field.placeholder = schema.examples ? `none; such as ${schema.examples[0]}` : "";
+    field.spellcheck = false;
+  } else if (!choices) {
+    field.type = "number";
+    field.step = schema.type === "integer" ? 1 : "any";
+    field.min = schema.minimum ?? schema.exclusiveMinimum ?? "";
+    field.max = schema.maximum ?? schema.exclusiveMaximum ?? "";
+  }
+  field.value = schema.default;
+  field.dataset.fallback = schema.default;
+  return field;
+}
 
 async function buildOptions() {
   const contract = await (await fetch("/openapi.json")).json();
   const schemas = contract.components.schemas.Options.properties;
-  const texts = {jpeg_quality: "JPEG quality"};
+  const texts = {jpeg_quality: "JPEG quality", lods: "Levels of detail", maps: "Maps to bake"};
   for (const [name, schema] of Object.entries(schemas)) {
     const label = document.createElement("label");
     const plain = name.replaceAll("_", " ");
     label.textContent = texts[name] ?? plain[0].toUpperCase() + plain.slice(1);
-    const field = document.createElement(schema.enum ? "select" : "input");
-    field.name = name;
-    for (const value of schema.enum ?? []) field.append(new Option(value, value));
-    if (!schema.enum) {
-      field.type = "number";
-      field.step = schema.type === "integer" ? 1 : "any";
-      field.min = schema.minimum ?? schema.exclusiveMinimum;
-      field.max = schema.maximum ?? schema.exclusiveMaximum;
-    }
-    field.value = schema.default;
-    field.dataset.fallback = schema.default;
-    label.append(field);
-    $("options").append(label);
+    label.append(fieldFor(name, schema));
+    $(foremost.includes(name) ? "options" : "more-options").append(label);
   }
 }
 
 function chosenOptions() {
   const options = {};
-  for (const field of $("options").querySelectorAll("input, select")) {
+  for (const field of form.querySelectorAll("fieldset input, fieldset select")) {
     if (field.value !== field.dataset.fallback) options[field.name] = field.value;
   }
   return options;
@@ -114,7 +125,8 @@ async function follow(state) {
 const milliseconds = (ms) => ms == null ? "–" : ms < 1000 ? `${ms.toFixed(0)} ms` : `${(ms / 1000).toFixed(2)} s`;
 
 function clear() {
-  for (const id of ["download", "report", "facts", "timings"]) $(id).hidden = true;
+  for (const id of ["download", "report", "facts", "timings", "maps", "notes"]) $(id).hidden = true;
+  $("progress").hidden = false;
   for (const figure of job.querySelectorAll("figure")) figure.hidden = true;
   $("errors").replaceChildren();
   $("detail").textContent = "";
@@ -137,16 +149,51 @@ function show(state) {
 
 function showProblem(problem) {
   job.classList.add("failed");
+  $("progress").hidden = true;
   $("state").textContent = problem.title;
   $("detail").textContent = problem.detail;
-  const items = (problem.errors ?? []).map((error) => {
-    const item = document.createElement("li");
-    const where = document.createElement("code");
-    where.textContent = error.pointer;
-    item.append(where, ` ${error.detail}`);
-    return item;
+  // One error that says what the detail says adds nothing but its place.
+  $("errors").replaceChildren(...(problem.errors ?? []).map(({pointer, detail}) =>
+    listItem(pointer, detail === problem.detail ? "" : detail)));
+}
+
+// A place in the document, where there is one, and what is said of it.
+function listItem(where, text) {
+  const item = document.createElement("li");
+  item.append(text);
+  if (where) {
+    const place = document.createElement("code");
+    place.textContent = where;
+    item.append(text ? " " : "at ", place);
+  }
+  return item;
+}
+
+// What was repaired, what could not be kept, and what could not be unfolded: then the job is not whole.
+function showNotes({notes, partial, components}) {
+  if (partial) $("state").textContent = "Done in part";
+  const problems = components.filter(({problem}) => problem).map(({problem}) => listItem(problem.where, `Not unfolded: ${problem.message}`));
+  const items = [...problems, ...notes.map(({message, where}) => listItem(where, message))];
+  $("notes").querySelector("ul").replaceChildren(...items);
+  $("notes").hidden = items.length === 0;
+}
+
+// A link to each baked map; the first click fetches it, with the key.
+function showMaps(state, maps) {
+  const links = maps.map(({name}) => {
+    const link = document.createElement("a");
+    link.textContent = link.download = name;
+    link.href = `${state.links.self}/maps/${encodeURIComponent(name)}`;
+    link.addEventListener("click", async (event) => {
+      if (link.href.startsWith("blob:")) return;
+      event.preventDefault();
+      link.href = await objectUrl(link.href);
+      link.click();
+    });
+    return link;
   });
-  $("errors").replaceChildren(...items);
+  $("maps").replaceChildren("Maps: ", ...links.flatMap((link, i) => i === 0 ? [link] : [" · ", link]));
+  $("maps").hidden = links.length === 0;
 }
 
 function fillTable(table, rows) {
@@ -180,8 +227,11 @@ async function showResult(state) {
     $(id).src = await objectUrl(state.links[link]);
     $(id).closest("figure").hidden = false;
   }
+  showMaps(state, report.maps);
+  showNotes(report);
   const {certificate, distortion} = report;
   fillTable($("facts"), [
+    ["Components", report.topology.components.toLocaleString()],
     ["Certificate", certificate.valid ? "valid" : "not valid"],
     ["Folded triangles", certificate.folded.toLocaleString()],
     ["Degree of the map", certificate.degree.toFixed(9)],
@@ -198,7 +248,8 @@ async function showResult(state) {
 
 function choose(list) {
   files = [...list];
-  $("chosen").textContent = files.map((file) => file.name).join(", ");
+  // The field itself names what was chosen, and is told what was dropped.
+  if ($("files").files !== list) $("files").files = list;
 }
 
 $("files").addEventListener("change", (event) => choose(event.target.files));

@@ -88,6 +88,7 @@ std::string against_schema(const Json& value, const Json& reference, const std::
                                            "maxLength",
                                            "format",
                                            "description",
+                                           "examples",
                                            "exclusiveMinimum",
                                            "exclusiveMaximum",
                                            "contentMediaType"};

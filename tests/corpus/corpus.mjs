@@ -9,7 +9,7 @@ import {externalUris} from '../e2e/external_uris.mjs'
 import {complaints} from '../e2e/validate.mjs'
 
 const [orbis, folder, out, ...options] = process.argv.slice(2)
-const limit = 300 // seconds for one model
+const limit = 1800 // seconds for one model: nothing takes that long, not even on a busy machine
 const isModel = (name) => /\.(glb|gltf|drc|obj|ply|stl|zip)$/i.test(name)
 
 // --- the models ------------------------------------------------------------------------------------------------------
@@ -75,11 +75,8 @@ const parse = (text) => {
   }
 }
 
-// Works on the names that the report has, whatever else it grows: a number, the sum or the worst over components.
 const at = (value, ...keys) => keys.reduce((part, key) => part?.[key], value)
-const sum = (value) => (value && typeof value === 'object'
-  ? Object.values(value).filter(Number.isFinite).reduce((a, b) => a + b, 0)
-  : value)
+const total = (parts, key) => parts?.reduce((sum, part) => sum + part[key], 0)
 
 function describe(name, result, report, invalid, seconds) {
   const problem = parse(result.messages)
@@ -90,9 +87,10 @@ function describe(name, result, report, invalid, seconds) {
     result: outcome,
     triangles: at(report, 'input', 'triangles'),
     components: at(report, 'topology', 'components'),
-    genus: at(report, 'topology', 'genus'),
-    holes: at(report, 'topology', 'boundary_loops'),
-    repairs: sum(report?.repairs),
+    genus: total(report?.components, 'genus'),
+    holes: total(report?.components, 'boundary_loops'),
+    repairs: report && Object.entries(report.repairs).filter(([, count]) => count > 0).map(([what, count]) =>
+      `${shown(count)} ${what.replaceAll('_', ' ')}`).join(', '),
     folded: at(report, 'certificate', 'folded'),
     dirichlet: at(report, 'distortion', 'symmetric_dirichlet'),
     conformal: at(report, 'distortion', 'quasi_conformal_mean'),

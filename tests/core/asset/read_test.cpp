@@ -125,7 +125,7 @@ TEST_CASE("attributes of every component type come back to the bit") {
   check_attribute<std::int16_t>({-32768, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 32767}, "VEC3", 3, true);
   check_attribute<std::uint16_t>({0, 65535, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14}, "VEC4", 4, false);
   check_attribute<std::uint32_t>({0, 1, 4294967294u, 4294967295u}, "SCALAR", 1, false);
-  check_attribute<float>({-0.0f, std::numeric_limits<float>::denorm_min(), std::nanf(""), 1e38f}, "SCALAR", 1, false);
+  check_attribute<float>({-0.0f, std::numeric_limits<float>::denorm_min(), -1e-38f, 1e38f}, "SCALAR", 1, false);
 }
 
 TEST_CASE("quantised positions read as the numbers they stand for") {
