@@ -119,8 +119,6 @@ struct NewPrimitive {
   std::vector<std::uint32_t> indices;
   std::vector<Attribute> attributes; // with TEXCOORD_n of the atlas and _SPHERE
   std::vector<std::vector<Attribute>> targets;
-  // The name of the last target where that is not the input's; all new primitives of a mesh then have it.
-  std::string added_target;
   std::uint32_t atlas_texcoord = 0; // n
   // The textures of its material that new images take the place of, sampled by TEXCOORD_n: number of the image.
   std::map<TextureSlot, std::uint32_t> textures;
@@ -129,6 +127,8 @@ struct NewPrimitive {
   // Triangles of the old primitive (its own vertex numbers) that go on without a place in the atlas: a primitive of
   // their own behind the mesh's others, with the old attributes and the old material. Only beside `indices`.
   std::vector<std::uint32_t> left_out{};
+  // The name of the last target where that is not the input's; all new primitives of a mesh then have it.
+  std::string added_target{};
 };
 
 // A coarser version of the new primitives.

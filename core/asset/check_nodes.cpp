@@ -1,26 +1,13 @@
-#include <array>
-#include <cmath>
-#include <optional>
 #include <vector>
 
 #include "core/asset/check_document.h"
+#include "core/asset/nodes.h"
 
 namespace orbis::asset {
 namespace {
 
 constexpr std::size_t max_levels = 2000;
 constexpr std::size_t none = static_cast<std::size_t>(-1);
-
-using Matrix3 = std::array<std::array<double, 3>, 3>; // [row][column]
-constexpr Matrix3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-
-Matrix3 operator*(const Matrix3& a, const Matrix3& b) {
-  Matrix3 c{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) c[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
-  }
-  return c;
-}
 
 // All 2x2 minors vanish: the image is a line or a point.
 bool has_rank_below_two(const Matrix3& m) {
@@ -31,33 +18,6 @@ bool has_rank_below_two(const Matrix3& m) {
     }
   }
   return true;
-}
-
-template <std::size_t N>
-std::optional<std::array<double, N>> numbers(const JsonReader& reader, const Json& node, std::string_view key) {
-  const Json* found = reader.array(node, key);
-  if (!found) return std::nullopt;
-  std::array<double, N> values{};
-  if (found->size() != N) reader.fail(node, key, "must hold " + std::to_string(N) + " numbers");
-  for (std::size_t i = 0; i < N; ++i) {
-    if (!(*found)[i].is_number()) reader.fail(node, key, "must hold " + std::to_string(N) + " numbers");
-    values[i] = (*found)[i].get<double>();
-  }
-  return values;
-}
-
-// The linear part of a node's matrix: rotation times scale, where it is not given as a whole.
-Matrix3 local_matrix(const JsonReader& reader, const Json& node) {
-  if (const auto m = numbers<16>(reader, node, "matrix")) {
-    return {{{(*m)[0], (*m)[4], (*m)[8]}, {(*m)[1], (*m)[5], (*m)[9]}, {(*m)[2], (*m)[6], (*m)[10]}}};
-  }
-  const auto s = numbers<3>(reader, node, "scale").value_or(std::array<double, 3>{1, 1, 1});
-  const auto q = numbers<4>(reader, node, "rotation").value_or(std::array<double, 4>{0, 0, 0, 1});
-  const auto [x, y, z, w] = q;
-  const Matrix3 rotation{{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
-                          {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
-                          {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}}};
-  return rotation * Matrix3{{{s[0], 0, 0}, {0, s[1], 0}, {0, 0, s[2]}}};
 }
 
 class NodeTree {
@@ -138,14 +98,14 @@ std::vector<bool> NodeTree::animated_nodes() const {
 
 void NodeTree::check_scales() const {
   const std::vector<bool> animated = animated_nodes();
-  std::vector<Matrix3> world(parent_.size(), identity);
+  std::vector<Matrix3> world(parent_.size());
   std::vector<bool> may_grow = animated;
   // For each mesh: the first node that scales it to nothing, unless another one shows it.
   std::vector<std::size_t> vanishing(array_size(document_, "meshes"), none);
   std::vector<bool> shown(vanishing.size());
   for (const std::size_t n : order_) {
     const Json& node = (*nodes_)[n];
-    world[n] = local_matrix(reader_, node);
+    world[n] = local_placement(reader_, node).linear;
     if (const std::size_t p = parent_[n]; p != none) {
       world[n] = world[p] * world[n];
       if (may_grow[p]) may_grow[n] = true;

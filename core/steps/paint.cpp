@@ -1,8 +1,11 @@
 #include "core/steps/paint.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/asset/image_codec.h"
+#include "core/asset/placement.h"
 #include "core/texture/bake.h"
 #include "core/texture/preview.h"
 
@@ -33,6 +36,20 @@ Image decode_file(const Request& request, std::string_view stem, const Limits& l
         "texture");
   }
   return asset::decode_image(*bytes, limits.max_image_pixels, stem);
+}
+
+bool is_finite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+// Each mesh where the scene shows it first. Where that is beyond float, all stay where they are.
+mesh::TriangleMesh in_scene(const asset::Asset& asset, const Surface& surface) {
+  const std::vector<asset::Placement> placements = asset::first_placements(asset);
+  mesh::TriangleMesh out = surface.mesh;
+  for (const Component& c : surface.components) {
+    for (std::uint32_t v = c.first_vertex; v < c.end_vertex(); ++v) {
+      out.positions[v] = Vec3f(placements[c.mesh](Vec3d(surface.mesh.positions[v])));
+    }
+  }
+  return std::ranges::all_of(out.positions, is_finite) ? out : surface.mesh;
 }
 
 } // namespace
@@ -69,8 +86,10 @@ Image paint(std::span<const Image> uploaded, const texture::CutMesh& cut, std::u
                           : texture::bake_cube_map(cut, page, uploaded, progress);
 }
 
-std::vector<std::byte> preview(const Surface& surface, const texture::CutMesh& cut, std::span<const Image> pages) {
-  return asset::encode_png(texture::draw_side_by_side(surface.mesh, cut, pages, preview_width, preview_height));
+std::vector<std::byte> preview(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut,
+                               std::span<const Image> pages) {
+  const mesh::TriangleMesh shown = in_scene(asset, surface);
+  return asset::encode_png(texture::draw_side_by_side(shown, cut, pages, preview_width, preview_height));
 }
 
 } // namespace orbis

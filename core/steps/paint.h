@@ -29,8 +29,9 @@ namespace orbis {
 [[nodiscard]] texture::Image paint(std::span<const texture::Image> uploaded, const texture::CutMesh& cut,
                                    std::uint32_t page, Progress& progress);
 
-// The sphere and the model side by side, with the atlas on both, as PNG.
-[[nodiscard]] std::vector<std::byte> preview(const Surface& surface, const texture::CutMesh& cut,
-                                             std::span<const texture::Image> pages);
+// The sphere and the model side by side, with the atlas on both, as PNG. Each mesh is seen where the scene shows it
+// first; skinned ones in their bind pose.
+[[nodiscard]] std::vector<std::byte> preview(const asset::Asset& asset, const Surface& surface,
+                                             const texture::CutMesh& cut, std::span<const texture::Image> pages);
 
 } // namespace orbis

@@ -1,0 +1,28 @@
+// Where nodes place meshes.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/asset/asset.h"
+
+namespace orbis::asset {
+
+using Matrix3 = std::array<std::array<double, 3>, 3>; // [row][column]
+[[nodiscard]] Matrix3 operator*(const Matrix3& a, const Matrix3& b);
+
+// p -> linear p + offset
+struct Placement {
+  Matrix3 linear{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  Vec3d offset{};
+
+  [[nodiscard]] Vec3d operator()(const Vec3d& p) const;
+  // First `inner`, then this one.
+  [[nodiscard]] Placement after(const Placement& inner) const;
+};
+
+// Where the default scene shows each mesh of the document first (without scenes: the nodes that have no parent). A mesh
+// that it does not show, or that joints place, stays where it is. One for each mesh.
+[[nodiscard]] std::vector<Placement> first_placements(const Asset& asset);
+
+} // namespace orbis::asset
