@@ -18,6 +18,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "core/mesh/spatial_order.h"
 #include "core/mesh/unit_positions.h"
@@ -62,13 +63,16 @@ constexpr std::uint32_t mending_sweeps = 20;
 constexpr double mending_gain = 1e-3;
 
 struct Effort {
-  // With a factorisation: levels up to so many vertices, and up to so many where the last such level was hard; at most
-  // so many steps a level, ending where a step promises less than this part of the energy.
+  // With a factorisation: levels up to so many vertices, up to so many where the last such level was hard, or up to
+  // this part of the surface's vertices; at most so many steps a level, ending where a step promises less than this
+  // part of the energy.
   std::size_t usual_level, hard_level;
+  double part_of_surface;
   int newton_steps;
   double promise;
-  // With conjugate gradients, on the finest level: at most so many steps, of so many iterations each, ending where one
-  // gains less than `enough`.
+  // With conjugate gradients, on the finest level of at most so many vertices: at most so many steps, of so many
+  // iterations each, ending where one gains less than `enough`.
+  std::size_t largest;
   int steps;
   std::uint32_t iterations;
   double enough;
@@ -77,13 +81,13 @@ struct Effort {
 constexpr Effort effort_of(Quality quality) {
   switch (quality) {
   case Quality::draft:
-    return {1'000, 4'000, 1, 1e-3, 0, 0, 0};
+    return {1'000, 4'000, 1.0 / 240, 1, 1e-3, 0, 0, 0, 0};
   case Quality::standard:
-    return {2'000, 12'000, 2, 2e-3, 8, 8, 1e-2};
+    return {2'000, 27'000, 1.0 / 60, 3, 2e-3, 1'000'000, 8, 8, 1e-2};
   case Quality::high:
     break;
   }
-  return {16'000, 250'000, 20, 1e-4, 60, 60, 2e-4};
+  return {16'000, 250'000, 1.0 / 20, 20, 1e-4, std::numeric_limits<std::size_t>::max(), 60, 60, 2e-4};
 }
 
 // The stretch alone does not keep triangles from growing: on coarse levels that leads into minima that finer ones do
@@ -110,6 +114,7 @@ private:
   // Sweeps over what is active, all at first. Returns whether no step is worthwhile any more.
   bool relax(std::uint32_t sweeps, double worthwhile, std::span<Vec3d> points, Progress& progress);
   void centre(std::span<Vec3d> points);
+  [[nodiscard]] int global_steps() const { return points_.size() <= effort_.largest ? effort_.steps : 0; }
   [[nodiscard]] bool wants_newton(std::size_t vertices) const;
   void relax_by_newton(std::span<Vec3d> points, Progress& progress);
   [[nodiscard]] WholeLevel whole_level() const {
@@ -129,6 +134,7 @@ private:
   Active active_;
   HierarchicalBasis basis_;
   std::size_t last_newton_level_ = 0; // its vertices
+  bool needed_convex_ = false;        // there
   double promise_ = 1;                // of the first step there, or half of what it was before
 };
 
@@ -197,23 +203,26 @@ void Refinement::centre(std::span<Vec3d> points) {
 bool Refinement::wants_newton(std::size_t vertices) const {
   const bool was_hard = promise_ > hard, finest = vertices == points_.size();
   const double growth = !was_hard ? level_growth : finest ? 1 : hard_level_growth;
-  return vertices >= smallest_newton_level && vertices <= (was_hard ? effort_.hard_level : effort_.usual_level) &&
+  const auto part = static_cast<std::size_t>(effort_.part_of_surface * static_cast<double>(points_.size()));
+  return vertices >= smallest_newton_level &&
+         vertices <= std::max(was_hard ? effort_.hard_level : effort_.usual_level, part) &&
          static_cast<double>(vertices) >= growth * static_cast<double>(last_newton_level_);
 }
 
 void Refinement::relax_by_newton(std::span<Vec3d> points, Progress& progress) {
   const WholeLevel level = whole_level();
-  NewtonLevel newton(level, pool_);
+  NewtonLevel newton(level, needed_convex_, pool_);
   // The finest level has no other after it, and the shapes of its triangles are not rounded off.
   const int most_steps = points.size() == points_.size() ? 2 * effort_.newton_steps : effort_.newton_steps;
   for (int i = 0; i < most_steps; ++i) {
     progress.check();
     const double promise = newton.take(points);
-    if (i == 0) promise_ = std::max(promise, promise_ / 2);
+    if (i == 0) promise_ = std::clamp(promise, promise_ / 2, 1.0); // the model may promise more than there is
     relax(mending_sweeps, mending_gain, points, progress);
     if (promise < effort_.promise) break;
   }
   last_newton_level_ = points.size();
+  needed_convex_ = newton.needed_convex();
 }
 
 void Refinement::relax_level(std::uint32_t sweeps, double worthwhile, Progress& progress) {
@@ -239,7 +248,7 @@ void Refinement::refine(Progress& progress) {
     const auto live = static_cast<double>(level_.vertices().size());
     relax_level(static_cast<std::uint32_t>(std::clamp(sweep_budget / live, fewest_sweeps, most_sweeps)),
                 std::clamp(worthwhile_gain * live / small_level, smallest_gain, worthwhile_gain), progress);
-    if (effort_.steps > 0) keep_stiffness(round);
+    if (global_steps() > 0) keep_stiffness(round);
     progress.report(Stage::refine, level_.vertices().size(), points_.size());
   }
 }
@@ -265,7 +274,7 @@ void Refinement::keep_stiffness(std::size_t round) {
 }
 
 void Refinement::optimise(Progress& progress) {
-  const auto total = static_cast<std::uint64_t>(effort_.steps) + 1;
+  const auto total = static_cast<std::uint64_t>(global_steps()) + 1;
   progress.report(Stage::optimise, 0, total);
   if (hierarchy_.rounds() == 0) { // the input is a tetrahedron
     level_.build(hierarchy_, positions_, fine_regularisation, pool_);
@@ -275,7 +284,7 @@ void Refinement::optimise(Progress& progress) {
   energy_ = target_;
   converged = relax(final_sweeps, final_gain, points_, progress);
   GlobalStep global(whole_level(), basis_, pool_);
-  for (int i = 0; i < effort_.steps && hierarchy_.rounds() > 0; ++i) {
+  for (int i = 0; i < global_steps() && hierarchy_.rounds() > 0; ++i) {
     progress.report(Stage::optimise, static_cast<std::uint64_t>(i) + 1, total);
     progress.check();
     const StepOutcome step = global.take(effort_.iterations, points_);

@@ -15,8 +15,9 @@ constexpr double shift = 0.01;
 
 } // namespace
 
-NewtonLevel::NewtonLevel(const WholeLevel& level, mesh::ThreadPool& pool)
-    : level_(level), pool_(pool), exact_share_(first_share), mass_(level.stars.vertices(), 0) {
+NewtonLevel::NewtonLevel(const WholeLevel& level, bool needed_convex, mesh::ThreadPool& pool)
+    : level_(level), pool_(pool), exact_share_(needed_convex ? second_share : first_share),
+      mass_(level.stars.vertices(), 0) {
   for (std::size_t t = 0; t < level.triangles.size(); ++t) {
     for (const mesh::Index v : level.triangles[t]) mass_[v] += double{level.references[t].area} / 3;
   }

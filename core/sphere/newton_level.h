@@ -14,13 +14,17 @@ namespace orbis::sphere {
 
 class NewtonLevel {
 public:
-  // level: all of it is kept by reference.
-  NewtonLevel(const WholeLevel& level, mesh::ThreadPool& pool);
+  // level: all of it is kept by reference. needed_convex: whether the last such level was solved with none of the exact
+  // Hessian only; then this one hardly allows most of it.
+  NewtonLevel(const WholeLevel& level, bool needed_convex, mesh::ThreadPool& pool);
 
   // One step: solves for the direction with as much of the exact Hessian as leaves it positive definite, and goes along
   // it as step_along (global_step.h) does. Returns the part of the energy that the quadratic model had promised: an
   // estimate of what there is to gain, whatever the step's length.
   double take(std::span<Vec3d> points);
+
+  // Whether a step was taken with none of the exact Hessian.
+  [[nodiscard]] bool needed_convex() const { return exact_share_ == 0; }
 
 private:
   [[nodiscard]] bool factorise(std::span<const Vec3d> points);

@@ -16,6 +16,8 @@ constexpr std::size_t grain = 8192;
 // eps in units of the areas around a vertex before the step: from half of them down.
 constexpr double first_eps = 0.5, eps_factor = 0.4;
 constexpr int rounds = 8, sweeps = 6, last_sweeps = 4;
+// A round that leaves more than this part of the folds hardly ever is followed by one that leaves none.
+constexpr double hopeless = 0.9;
 constexpr int first_rings = 3; // around a folded triangle; one more each round
 
 // A member of the family with V regularised.
@@ -78,7 +80,9 @@ public:
       for (int sweep = 0; sweep < sweeps; ++sweep) {
         for (const Index v : patch_) move(v, eps);
       }
+      const std::size_t before = folded.size();
       folded = folded_in_patch();
+      if (static_cast<double>(folded.size()) > hopeless * static_cast<double>(before)) return false;
     }
     if (!folded.empty() || !every_star_winds_once()) return false;
     double gain = 0;
