@@ -36,7 +36,8 @@ std::vector<Vec3f> deliverable(std::span<const sphere::GridPoint> points) {
 
 } // namespace
 
-Result process(const Request& request, const Limits& limits, Progress& progress, const StageDump& dump) {
+Result process(const Request& request, const Limits& limits, Progress& progress, Checkpoints& checkpoints,
+               const StageDump& dump) {
   StageClock clock(progress);
   Result result;
   Report& report = result.report;
@@ -50,7 +51,7 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   Surface surface = make_surface(asset, report);
   dump_mesh(dump, "1-surface.obj", surface.mesh.positions, surface.mesh.triangles);
 
-  std::vector<Vec3d> points = embed(surface, request.options, clock, report);
+  std::vector<Vec3d> points = embed(surface, request.options, clock, checkpoints, report);
 
   clock.report(Stage::atlas, 0, 1);
   const std::optional<RemeshSource> source = resample(asset, surface, points, limits, clock, report);

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/checkpoints.h"
 #include "core/options.h"
 #include "core/progress.h"
 #include "core/report.h"
@@ -39,8 +40,16 @@ struct Result {
 // Called with a file name ("2-simplified.obj", "5-atlas.png", …) and its contents, for `orbis run --dump-stages`.
 using StageDump = std::function<void(std::string_view name, std::span<const std::byte> contents)>;
 
-// Does the whole job. Throws Error; never returns an uncertified result. `dump` may be empty.
-[[nodiscard]] Result process(const Request& request, const Limits& limits, Progress& progress,
+// Does the whole job. Throws Error; never returns an uncertified result. The result is the same whether the job was
+// interrupted and taken up from a checkpoint or not. `dump` may be empty.
+[[nodiscard]] Result process(const Request& request, const Limits& limits, Progress& progress, Checkpoints& checkpoints,
                              const StageDump& dump = {});
+
+// Without checkpoints.
+[[nodiscard]] inline Result process(const Request& request, const Limits& limits, Progress& progress,
+                                    const StageDump& dump = {}) {
+  NoCheckpoints none;
+  return process(request, limits, progress, none, dump);
+}
 
 } // namespace orbis

@@ -54,6 +54,16 @@ void BlobStore::remove(std::string_view job) {
   guarded("delete a job's files", [&] { fs::remove_all(directory(job)); });
 }
 
+void BlobStore::remove_output(std::string_view job, std::string_view name) {
+  guarded("delete a job's files", [&] { fs::remove(output_path(job, name)); });
+}
+
+std::optional<std::uint64_t> BlobStore::output_size(std::string_view job, std::string_view name) const {
+  std::error_code none;
+  const auto bytes = fs::file_size(output_path(job, name), none);
+  return none ? std::nullopt : std::optional<std::uint64_t>(bytes);
+}
+
 std::vector<std::string> BlobStore::jobs() const {
   return guarded("be listed", [&] {
     std::vector<std::string> names;

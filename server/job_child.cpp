@@ -55,6 +55,23 @@ private:
   std::chrono::steady_clock::time_point next_;
 };
 
+class PipeCheckpoints final : public Checkpoints {
+public:
+  PipeCheckpoints(std::vector<std::byte> kept, std::chrono::seconds interval)
+      : kept_(std::move(kept)), interval_(interval) {}
+  [[nodiscard]] bool due() const override { return std::chrono::steady_clock::now() - last_ >= interval_; }
+  void keep(std::span<const std::byte> state) override {
+    send_file(checkpoint_name, state);
+    last_ = std::chrono::steady_clock::now();
+  }
+  [[nodiscard]] std::span<const std::byte> kept() const override { return kept_; }
+
+private:
+  std::vector<std::byte> kept_;
+  std::chrono::seconds interval_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
 void receive(std::span<std::byte> bytes) {
   while (!bytes.empty()) {
     const auto got = ::read(STDIN_FILENO, bytes.data(), bytes.size());
@@ -83,11 +100,13 @@ void run_task() {
   const std::vector<std::byte> model = receive_file(task.model);
   Request request{model, {}, task.options};
   for (const InputFile& file : task.files) request.files.insert_or_assign(file.name, receive_file(file));
+  PipeCheckpoints checkpoints(task.checkpoint ? receive_file(*task.checkpoint) : std::vector<std::byte>(),
+                              std::chrono::seconds(task.limits.checkpoint_seconds));
   enter_sandbox();
 
   PipeProgress progress;
   const StageDump dump = task.dump_stages ? StageDump(send_file) : StageDump();
-  const Result result = process(request, task.limits.content, progress, dump);
+  const Result result = process(request, task.limits.content, progress, checkpoints, dump);
   const std::string report = api::dump(api::to_json(result.report), 2) + "\n";
   send_file("result.glb", result.glb);
   send_file("atlas.png", result.atlas_png);

@@ -31,7 +31,8 @@ Json limits_json(const JobLimits& limits) {
           {"memory_bytes", limits.memory_bytes},
           {"output_bytes", limits.output_bytes},
           {"seconds", limits.seconds},
-          {"niceness", limits.niceness}};
+          {"niceness", limits.niceness},
+          {"checkpoint_seconds", limits.checkpoint_seconds}};
 }
 
 JobLimits limits_from(const Json& json) {
@@ -45,6 +46,7 @@ JobLimits limits_from(const Json& json) {
   json.at("output_bytes").get_to(limits.output_bytes);
   json.at("seconds").get_to(limits.seconds);
   json.at("niceness").get_to(limits.niceness);
+  json.at("checkpoint_seconds").get_to(limits.checkpoint_seconds);
   return limits;
 }
 
@@ -82,6 +84,7 @@ std::string task_line(const JobTask& task) {
   for (const InputFile& file : task.files) files.push_back(file_json(file));
   return api::dump({{"model", file_json(task.model)},
                     {"files", std::move(files)},
+                    {"checkpoint", task.checkpoint ? file_json(*task.checkpoint) : Json()},
                     {"options", api::to_json(task.options)},
                     {"limits", limits_json(task.limits)},
                     {"dump_stages", task.dump_stages}}) +
@@ -94,6 +97,7 @@ JobTask parse_task(std::string_view line) {
     JobTask task;
     task.model = input_file(json.at("model"));
     for (const Json& file : json.at("files")) task.files.push_back(input_file(file));
+    if (const Json& checkpoint = json.at("checkpoint"); !checkpoint.is_null()) task.checkpoint = input_file(checkpoint);
     task.options = api::options_from_json(json.at("options"));
     task.limits = limits_from(json.at("limits"));
     json.at("dump_stages").get_to(task.dump_stages);

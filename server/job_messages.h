@@ -1,6 +1,7 @@
 // What a job's parent and child process say to each other.
 //
-// To the child, on its standard input: one line of JSON (the task), then the bytes of the model and of each file.
+// To the child, on its standard input: one line of JSON (the task), then the bytes of the model, of each file
+// and of the checkpoint, if there is one.
 // To the parent, on its standard output: lines of JSON, each one of
 //   {"progress":{"stage":"refine","done":1,"total":2}}
 //   {"file":{"name":"result.glb","bytes":123}}             followed by that many bytes

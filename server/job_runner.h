@@ -7,6 +7,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/error.h"
@@ -22,10 +23,14 @@ struct InputFile {
 };
 
 struct OutputFile {
-  std::string name; // "result.glb", "report.json", "atlas.png", "preview.png", "map-….png", or a dump of a stage
+  std::string name; // "result.glb", "report.json", "atlas.png", "preview.png", "map-….png", a dump of a stage, or
+                    // checkpoint_name
   std::uint64_t bytes = 0;
   std::string sha256;
 };
+
+// The output that a job replaces from time to time, to go on from where it is interrupted.
+inline constexpr std::string_view checkpoint_name = "checkpoint";
 
 // What the operator allows one job.
 struct JobLimits {
@@ -34,11 +39,13 @@ struct JobLimits {
   std::uint64_t output_bytes = 4ull << 30; // of all files together
   std::uint32_t seconds = 600;             // wall clock; CPU time: as much on every core
   int niceness = 10;                       // so that the server answers whatever the load
+  std::uint32_t checkpoint_seconds = 10;   // from one checkpoint to the next, at least
 };
 
 struct JobTask {
   InputFile model;
   std::vector<InputFile> files;
+  std::optional<InputFile> checkpoint; // that an interrupted run of the job has left
   Options options;
   JobLimits limits;
   bool dump_stages = false;
@@ -54,7 +61,7 @@ struct JobOutcome {
 // Called from the thread that runs the job.
 struct JobHooks {
   std::function<void(Stage stage, std::uint64_t done, std::uint64_t total)> progress;
-  // Where an output file goes; an empty path: it is not wanted.
+  // Where an output file goes; an empty path: it is not wanted. A checkpoint comes again and again.
   std::function<std::filesystem::path(std::string_view name)> place;
 };
 

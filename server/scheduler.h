@@ -27,7 +27,7 @@ struct SchedulerSettings {
   std::chrono::seconds time_to_live{24 * 3600}; // of a finished job's files
   std::uint32_t attempts = 3;                   // a job that was interrupted this often has failed
   bool cache = true;                            // a request that was answered before is answered from there
-  std::string build;                            // tells this program from others: their results are not its own
+  std::string build; // tells this program from others: their results and checkpoints are not its own
 };
 
 class Scheduler final : public api::JobService {
@@ -81,6 +81,7 @@ private:
   void finish(StoredJob& stored, api::JobState state) const;
   void changed(StoredJob& stored);
   void remove_files(const std::string& id);
+  void forget_checkpoint(const std::string& id) const;
   [[nodiscard]] std::optional<api::StoredFile> output(std::string_view id, std::string_view name);
   [[nodiscard]] api::Job shown(const StoredJob& stored) const;
   [[nodiscard]] std::optional<api::Job> find_locked(std::string_view id);
@@ -94,6 +95,7 @@ private:
   Metrics& metrics_;
   SchedulerSettings settings_;
   UlidSource ids_;
+  std::string checkpoint_file_; // the name under which this build's checkpoints are stored
 
   std::mutex mutex_; // guards the store and everything below but the atomics
   std::condition_variable_any work_, changes_,

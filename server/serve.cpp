@@ -37,7 +37,7 @@ void raise_descriptor_limit() {
   ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-// The program's own digest: a result is as good as another only if the same build made it.
+// The program's own digest: a result is as good as another, and a checkpoint of use, only if the same build made it.
 std::string build_digest() {
   Sha256 digest;
   std::ifstream self("/proc/self/exe", std::ios::binary);
@@ -45,7 +45,8 @@ std::string build_digest() {
   while (self.read(piece.data(), static_cast<std::streamsize>(piece.size())) || self.gcount() > 0) {
     digest.update(std::as_bytes(std::span(piece).first(static_cast<std::size_t>(self.gcount()))));
   }
-  if (!self.eof()) throw Error(ErrorCode::internal, "the program cannot read itself, which the cache of results needs");
+  if (!self.eof())
+    throw Error(ErrorCode::internal, "the program cannot read itself, which the cache of results and checkpoints need");
   return digest.finish();
 }
 
@@ -64,7 +65,7 @@ int serve(const Config& config) {
   Metrics metrics;
   WorkerProcess runner;
   SchedulerSettings settings = config.scheduler;
-  if (settings.cache) settings.build = build_digest();
+  settings.build = build_digest();
   Scheduler scheduler(store, blobs, runner, metrics, settings);
   api::Router router(scheduler, {config.keys});
   HttpServer http(router, blobs, metrics, config.http);

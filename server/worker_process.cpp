@@ -106,6 +106,7 @@ public:
   explicit InputStream(const JobTask& task) : pending_(task_line(task)) {
     files_.push_back(task.model);
     files_.insert(files_.end(), task.files.begin(), task.files.end());
+    if (task.checkpoint) files_.push_back(*task.checkpoint);
   }
 
   // What is to be written next; empty at the end.
@@ -150,7 +151,7 @@ public:
 
   void begin(std::string_view name, std::uint64_t bytes) {
     if (bytes > left_) throw Error(ErrorCode::too_large, "the job's results are larger than a job's may be here");
-    left_ -= bytes;
+    if (name != checkpoint_name) left_ -= bytes; // the next one takes its place
     name_ = name;
     if (const auto path = hooks_.place(name); !path.empty()) writer_.emplace(path);
   }
@@ -160,6 +161,7 @@ public:
   void end() {
     if (!writer_) return;
     const std::uint64_t bytes = writer_->bytes();
+    std::erase_if(done_, [&](const OutputFile& earlier) { return earlier.name == name_; });
     done_.push_back({name_, bytes, writer_->commit()});
     writer_.reset();
   }

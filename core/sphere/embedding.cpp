@@ -2,9 +2,10 @@
 
 namespace orbis::sphere {
 
-Embedding embed(const mesh::TriangleMesh& mesh, const Options& options, std::uint32_t threads, Progress& progress) {
+Embedding embed(const mesh::TriangleMesh& mesh, const Options& options, std::uint32_t threads, Progress& progress,
+                Checkpoints& checkpoints) {
   const auto by = [&](const TriangleEnergy& energy) {
-    return embed_by_energy(mesh, energy, options.quality, threads, progress);
+    return embed_by_energy(mesh, energy, options.quality, threads, progress, checkpoints);
   };
   switch (options.objective) {
   case Objective::shape_preserving:

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/checkpoints.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/options.h"
 #include "core/progress.h"
@@ -28,19 +29,21 @@ struct Embedding {
 
 // Least energy of a family (triangle_energy.h) on a hierarchy of independent vertex removals: see isometric.cpp.
 // Same requirements. quality: how many Newton steps of the whole map follow the hierarchy. The result does not depend
-// on `threads` (0: as many as the machine has).
+// on `threads` (0: as many as the machine has), nor on interruptions: levels are kept in `checkpoints`, and the work
+// goes on from the one that is kept there.
 [[nodiscard]] Embedding embed_by_energy(const mesh::TriangleMesh& mesh, const TriangleEnergy& energy, Quality quality,
-                                        std::uint32_t threads, Progress& progress);
+                                        std::uint32_t threads, Progress& progress, Checkpoints& checkpoints);
 
 // The default: symmetric Dirichlet energy.
 [[nodiscard]] inline Embedding embed_isometric(const mesh::TriangleMesh& mesh, Quality quality, std::uint32_t threads,
                                                Progress& progress) {
-  return embed_by_energy(mesh, SymmetricDirichlet{}, quality, threads, progress);
+  NoCheckpoints none;
+  return embed_by_energy(mesh, SymmetricDirichlet{}, quality, threads, progress, none);
 }
 
-// What the options ask for: objective, area_weight, quality, threshold.
+// What the options ask for: objective, area_weight, quality, threshold. The paper's method keeps no checkpoints.
 [[nodiscard]] Embedding embed(const mesh::TriangleMesh& mesh, const Options& options, std::uint32_t threads,
-                              Progress& progress);
+                              Progress& progress, Checkpoints& checkpoints);
 
 // The paper's "Minimum", Eq. 3: sum over vertices of sum_j w_ij theta_ij^2, with Floater's (1997) weights of the mesh.
 [[nodiscard]] double shape_preserving_energy(const mesh::TriangleMesh& mesh, const std::vector<Vec3d>& points);

@@ -52,6 +52,14 @@ void HierarchicalBasis::keep_stiffness(mesh::Index v, const Expansion& expansion
                    entry(f.x.y, f.y.y, f.x.z, f.y.z), entry(f.x.z, f.y.z, f.x.z, f.y.z)};
 }
 
+void HierarchicalBasis::write_stiffness(std::span<const mesh::Index> vertices, StateWriter& state) const {
+  for (const mesh::Index v : vertices) state.value(stiffness_[v]);
+}
+
+void HierarchicalBasis::read_stiffness(std::span<const mesh::Index> vertices, StateReader& state) {
+  for (const mesh::Index v : vertices) state.values(std::span<float>(stiffness_[v]));
+}
+
 // Mean value coordinates: neighbour k weighs (tan(a/2) + tan(b/2)) / distance, with the angles a, b on its two sides.
 void HierarchicalBasis::weigh_ring(std::size_t removal, std::span<const Vec3d> points) {
   const std::span<const mesh::Index> ring = hierarchy_.ring(removal);

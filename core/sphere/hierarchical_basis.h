@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "core/checkpoints.h"
 #include "core/mesh/thread_pool.h"
 #include "core/sphere/distortion_energy.h"
 #include "core/sphere/hierarchy.h"
@@ -31,6 +32,10 @@ public:
   // Keeps the stiffness that vertex v has now, at point p, as its diagonal block: to be called once its level is
   // relaxed.
   void keep_stiffness(mesh::Index v, const Expansion& expansion, const Vec3d& p);
+
+  // The stiffness kept of these vertices, to go on from a checkpoint.
+  void write_stiffness(std::span<const mesh::Index> vertices, StateWriter& state) const;
+  void read_stiffness(std::span<const mesh::Index> vertices, StateReader& state);
 
   // Gets ready for points that the caller then leaves alone: frames, and the mean value weights (Floater 2003) by which
   // a ring carries its vertex. points: all vertices of the mesh, the finest level.

@@ -100,7 +100,7 @@ class Refinement {
 public:
   Refinement(const TriangleEnergy& energy, Hierarchy hierarchy, std::vector<Vec3d> positions, const Effort& effort,
              mesh::ThreadPool& pool);
-  void refine(Progress& progress);
+  void refine(Progress& progress, Checkpoints& checkpoints);
   void optimise(Progress& progress);
   [[nodiscard]] std::vector<Vec3d> points() && { return std::move(points_); }
   std::uint64_t relaxations = 0;
@@ -108,6 +108,8 @@ public:
 
 private:
   void insert_round(std::size_t round);
+  void keep(std::size_t round, Checkpoints& checkpoints) const;
+  [[nodiscard]] std::size_t take_up(const Checkpoints& checkpoints);
   [[nodiscard]] bool insert(std::size_t removal);
   void relax_level(std::uint32_t sweeps, double worthwhile, Progress& progress);
   void keep_stiffness(std::size_t round);
@@ -239,9 +241,44 @@ void Refinement::relax_level(std::uint32_t sweeps, double worthwhile, Progress& 
   });
 }
 
-void Refinement::refine(Progress& progress) {
+// What the rounds that follow depend on, once the level of `round` is relaxed.
+void Refinement::keep(std::size_t round, Checkpoints& checkpoints) const {
+  StateWriter state;
+  state.value(std::uint64_t{points_.size()});
+  state.value(std::uint64_t{round});
+  state.value(relaxations);
+  state.value(std::uint64_t{last_newton_level_});
+  state.value(needed_convex_);
+  state.value(promise_);
+  state.values(std::span<const Vec3d>(level_points_));
+  if (global_steps() > 0) basis_.write_stiffness(level_.vertices(), state);
+  checkpoints.keep(state.bytes());
+}
+
+// Returns the round whose level is relaxed, or the number of rounds where nothing is.
+std::size_t Refinement::take_up(const Checkpoints& checkpoints) {
+  StateReader state(checkpoints.kept());
+  const auto vertices = state.value<std::uint64_t>(), kept_round = state.value<std::uint64_t>();
+  if (!state.ok() || vertices != points_.size() || kept_round >= hierarchy_.rounds()) return hierarchy_.rounds();
+  relaxations = state.value<std::uint64_t>();
+  last_newton_level_ = state.value<std::uint64_t>();
+  needed_convex_ = state.value<bool>();
+  promise_ = state.value<double>();
+  for (std::size_t round = hierarchy_.rounds(); round-- > kept_round;) {
+    for (std::uint32_t i = hierarchy_.round_first[round]; i < hierarchy_.round_first[round + 1]; ++i)
+      hierarchy_.undo(i);
+    level_.add_round(hierarchy_, round);
+  }
+  for (const Index v : level_.vertices()) points_[v] = state.value<Vec3d>();
+  if (global_steps() > 0) basis_.read_stiffness(level_.vertices(), state);
+  if (!state.ok()) throw Error(ErrorCode::internal, "the checkpoint of an interrupted run is cut off");
+  return kept_round;
+}
+
+void Refinement::refine(Progress& progress, Checkpoints& checkpoints) {
+  std::size_t round = take_up(checkpoints);
   progress.report(Stage::refine, level_.vertices().size(), points_.size());
-  for (std::size_t round = hierarchy_.rounds(); round-- > 0;) {
+  while (round-- > 0) {
     insert_round(round);
     level_.build(hierarchy_, positions_, round == 0 ? fine_regularisation : coarse_regularisation, pool_);
     order_.build(level_.stars(), pool_);
@@ -249,6 +286,7 @@ void Refinement::refine(Progress& progress) {
     relax_level(static_cast<std::uint32_t>(std::clamp(sweep_budget / live, fewest_sweeps, most_sweeps)),
                 std::clamp(worthwhile_gain * live / small_level, smallest_gain, worthwhile_gain), progress);
     if (global_steps() > 0) keep_stiffness(round);
+    if (checkpoints.due()) keep(round, checkpoints);
     progress.report(Stage::refine, level_.vertices().size(), points_.size());
   }
 }
@@ -276,7 +314,7 @@ void Refinement::keep_stiffness(std::size_t round) {
 void Refinement::optimise(Progress& progress) {
   const auto total = static_cast<std::uint64_t>(global_steps()) + 1;
   progress.report(Stage::optimise, 0, total);
-  if (hierarchy_.rounds() == 0) { // the input is a tetrahedron
+  if (level_.triangles().empty()) { // the input is a tetrahedron, or the work goes on from the finest level
     level_.build(hierarchy_, positions_, fine_regularisation, pool_);
     order_.build(level_.stars(), pool_);
   }
@@ -315,7 +353,7 @@ mesh::TriangleMesh reordered(const mesh::TriangleMesh& mesh, std::span<const Ind
 } // namespace
 
 Embedding embed_by_energy(const mesh::TriangleMesh& mesh, const TriangleEnergy& energy, Quality quality,
-                          std::uint32_t threads, Progress& progress) {
+                          std::uint32_t threads, Progress& progress, Checkpoints& checkpoints) {
   mesh::ThreadPool pool(threads);
   Embedding out;
   auto start = std::chrono::steady_clock::now();
@@ -325,7 +363,7 @@ Embedding embed_by_energy(const mesh::TriangleMesh& mesh, const TriangleEnergy& 
   out.t1_ms = milliseconds_since(start);
   start = std::chrono::steady_clock::now();
   Refinement refinement(energy, std::move(hierarchy), mesh::unit_positions(ordered), effort_of(quality), pool);
-  refinement.refine(progress);
+  refinement.refine(progress, checkpoints);
   out.t2_ms = milliseconds_since(start);
   start = std::chrono::steady_clock::now();
   refinement.optimise(progress);

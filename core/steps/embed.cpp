@@ -8,6 +8,7 @@
 #include "core/mesh/thread_pool.h"
 #include "core/sphere/canonical_turn.h"
 #include "core/sphere/embedding.h"
+#include "core/steps/component_checkpoints.h"
 #include "core/steps/leave_out.h"
 
 namespace orbis {
@@ -61,11 +62,10 @@ private:
 
 class Embedder {
 public:
-  Embedder(const Surface& surface, const Options& options)
-      : surface_(surface), options_(options), points_(surface.mesh.positions.size()),
-        embeddings_(surface.components.size()), minimum_(surface.components.size(), 0) {}
+  Embedder(const Surface& surface, const Options& options, Checkpoints& checkpoints)
+      : surface_(surface), options_(options), state_(surface), checkpoints_(checkpoints, surface, state_) {}
 
-  void run_one(Progress& progress) { try_to_embed(0, surface_.mesh, options_.threads, progress); }
+  void run_one(Progress& progress) { embed_large(0, surface_.mesh, progress); }
 
   void run_all(Progress& progress) {
     SharedProgress shared(progress, surface_.mesh.positions.size());
@@ -75,29 +75,38 @@ public:
       if (surface_.components[c].triangles < small_component) {
         small.push_back(c);
       } else {
-        try_to_embed(c, mesh_of(surface_, surface_.components[c]), options_.threads, quiet);
+        embed_large(c, mesh_of(surface_, surface_.components[c]), quiet);
         shared.add(surface_.components[c].vertices);
       }
     }
     run_small(small, shared, quiet);
+    checkpoints_.keep_if_due();
     shared.finish();
   }
 
   void fill(Report& report) const {
-    for (std::size_t c = 0; c < embeddings_.size(); ++c) {
-      report.t1_ms += embeddings_[c].t1_ms;
-      report.t2_ms += embeddings_[c].t2_ms;
-      report.t3_ms += embeddings_[c].t3_ms;
-      report.relaxations += embeddings_[c].relaxations;
-      report.converged = report.converged && embeddings_[c].converged;
-      report.minimum += minimum_[c];
+    for (std::size_t c = 0; c < state_.embeddings.size(); ++c) {
+      report.t1_ms += state_.embeddings[c].t1_ms;
+      report.t2_ms += state_.embeddings[c].t2_ms;
+      report.t3_ms += state_.embeddings[c].t3_ms;
+      report.relaxations += state_.embeddings[c].relaxations;
+      report.converged = report.converged && state_.embeddings[c].converged;
+      report.minimum += state_.minimum[c];
     }
   }
 
-  std::vector<Vec3d> take_points() { return std::move(points_); }
+  std::vector<Vec3d> take_points() { return std::move(state_.points); }
   [[nodiscard]] const Problems& problems() const { return problems_; }
 
 private:
+  // With all threads, and with checkpoints.
+  void embed_large(std::uint32_t c, const mesh::TriangleMesh& mesh, Progress& progress) {
+    if (state_.done[c] != 0) return;
+    ComponentCheckpoints::OfOne checkpoints(checkpoints_, c);
+    try_to_embed(c, mesh, options_.threads, progress, checkpoints);
+    checkpoints_.keep_if_due();
+  }
+
   // The largest first, so that no thread is left with a large one at the end.
   void run_small(std::vector<std::uint32_t>& small, SharedProgress& shared, Progress& quiet) {
     std::ranges::stable_sort(small, std::greater<>(),
@@ -107,9 +116,10 @@ private:
     mesh::ThreadPool pool(small.size() < 2 ? 1 : options_.threads);
     pool.for_blocks(small.size(), 1, [&](std::size_t begin, std::size_t) {
       const std::uint32_t c = small[begin];
+      NoCheckpoints none;
       try {
         quiet.check();
-        try_to_embed(c, mesh_of(surface_, surface_.components[c]), 1, quiet);
+        if (state_.done[c] == 0) try_to_embed(c, mesh_of(surface_, surface_.components[c]), 1, quiet, none);
         shared.add(surface_.components[c].vertices);
       } catch (...) {
         const std::lock_guard lock(mutex);
@@ -119,9 +129,10 @@ private:
     if (failure) std::rethrow_exception(failure);
   }
 
-  void try_to_embed(std::uint32_t c, const mesh::TriangleMesh& mesh, std::uint32_t threads, Progress& progress) {
+  void try_to_embed(std::uint32_t c, const mesh::TriangleMesh& mesh, std::uint32_t threads, Progress& progress,
+                    Checkpoints& checkpoints) {
     try {
-      embed(c, mesh, threads, progress);
+      embed(c, mesh, threads, progress, checkpoints);
     } catch (const Error& e) {
       if (e.code() != ErrorCode::not_certified) throw;
       const std::lock_guard lock(problems_mutex_);
@@ -129,28 +140,30 @@ private:
     }
   }
 
-  void embed(std::uint32_t c, const mesh::TriangleMesh& mesh, std::uint32_t threads, Progress& progress) {
-    sphere::Embedding& out = embeddings_[c];
-    out = sphere::embed(mesh, options_, threads, progress);
-    minimum_[c] = sphere::shape_preserving_energy(mesh, out.points);
+  void embed(std::uint32_t c, const mesh::TriangleMesh& mesh, std::uint32_t threads, Progress& progress,
+             Checkpoints& checkpoints) {
+    sphere::Embedding& out = state_.embeddings[c];
+    out = sphere::embed(mesh, options_, threads, progress, checkpoints);
+    state_.minimum[c] = sphere::shape_preserving_energy(mesh, out.points);
     const std::vector<Vec3d> turned = sphere::canonically_turned(mesh, std::move(out.points));
-    std::ranges::copy(turned, points_.begin() + surface_.components[c].first_vertex);
+    std::ranges::copy(turned, state_.points.begin() + surface_.components[c].first_vertex);
     out.points = {};
+    state_.done[c] = 1;
   }
 
   const Surface& surface_;
   const Options& options_;
-  std::vector<Vec3d> points_;
-  std::vector<sphere::Embedding> embeddings_; // without their points
-  std::vector<double> minimum_;
+  EmbeddedComponents state_;
+  ComponentCheckpoints checkpoints_;
   Problems problems_;
   std::mutex problems_mutex_;
 };
 
 } // namespace
 
-std::vector<Vec3d> embed(Surface& surface, const Options& options, Progress& progress, Report& report) {
-  Embedder embedder(surface, options);
+std::vector<Vec3d> embed(Surface& surface, const Options& options, Progress& progress, Checkpoints& checkpoints,
+                         Report& report) {
+  Embedder embedder(surface, options, checkpoints);
   if (surface.components.size() == 1) {
     embedder.run_one(progress);
   } else {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/checkpoints.h"
 #include "core/report.h"
 #include "core/steps/surface.h"
 
@@ -12,6 +13,8 @@ namespace orbis {
 // sphere is turned to its component's directions. Small components are shared out among the threads, large ones use all
 // threads one after the other; the result does not depend on their number. A component that cannot be embedded is left
 // out of the surface, as leave_out says. Fills the report's times and "Minimum" (Eq. 3), sums over the components.
-[[nodiscard]] std::vector<Vec3d> embed(Surface& surface, const Options& options, Progress& progress, Report& report);
+// An interrupted run is taken up where `checkpoints` has it: from a level of a large component.
+[[nodiscard]] std::vector<Vec3d> embed(Surface& surface, const Options& options, Progress& progress,
+                                       Checkpoints& checkpoints, Report& report);
 
 } // namespace orbis

@@ -82,7 +82,8 @@ Run run_once(const mesh::TriangleMesh& mesh, const Options& options) {
   forget_peak();
   const auto wall = std::chrono::steady_clock::now();
   const std::clock_t cpu = std::clock();
-  out.embedding = sphere::embed(mesh, options, options.threads, progress);
+  NoCheckpoints none;
+  out.embedding = sphere::embed(mesh, options, options.threads, progress, none);
   out.cpu = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
   out.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
   out.peak_kb = peak_kb();

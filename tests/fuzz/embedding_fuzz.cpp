@@ -28,10 +28,11 @@ shapes::RandomMesh mesh_of(std::uint64_t seed, double most_vertices) {
 
 std::string failure(const mesh::TriangleMesh& m, Objective objective) {
   NoProgress progress;
+  NoCheckpoints none;
   Options options;
   options.objective = objective;
   try {
-    const sphere::Snapped snapped = sphere::snap(sphere::embed(m, options, 1, progress).points, m.triangles);
+    const sphere::Snapped snapped = sphere::snap(sphere::embed(m, options, 1, progress, none).points, m.triangles);
     std::vector<Vec3f> points;
     for (const sphere::GridPoint& p : snapped.points) points.push_back(sphere::from_grid(p));
     return sphere::certify(points, m.triangles).failure();

@@ -12,7 +12,7 @@ namespace orbis::test {
 
 class FakeRunner final : public server::JobRunner {
 public:
-  enum class Behaviour { succeed, fail, crash, hang, no_report };
+  enum class Behaviour { succeed, fail, crash, hang, keep_and_hang, no_report };
   Behaviour behaviour = Behaviour::succeed;
 
   server::JobOutcome run(const server::JobTask& task, const server::JobHooks& hooks, std::stop_token stop) override {
@@ -41,6 +41,10 @@ public:
     case Behaviour::crash:
       outcome.error = Error(ErrorCode::internal, "the job's process ended unexpectedly");
       break;
+    case Behaviour::keep_and_hang:
+      write(hooks, std::string(server::checkpoint_name), "half way", outcome);
+      outcome.error = hang(stop);
+      break;
     case Behaviour::hang:
       outcome.error = hang(stop);
       break;
@@ -68,11 +72,15 @@ private:
         R"({"timing":{"stages":[{"name":"refine","wall_ms":5,"cpu_ms":6}]},"partial":false,"input":{"triangles":12}})";
     for (const std::string name : {"result.glb", "atlas.png", "preview.png", "map-normal.png", "report.json"}) {
       if (name == "report.json" && !with_report) continue;
-      const std::string contents = name == "report.json" ? report : "contents of " + name;
-      server::FileWriter writer(hooks.place(name));
-      writer.write(std::as_bytes(std::span(contents)));
-      outcome.files.push_back({name, contents.size(), writer.commit()});
+      write(hooks, name, name == "report.json" ? report : "contents of " + name, outcome);
     }
+  }
+
+  static void write(const server::JobHooks& hooks, const std::string& name, const std::string& contents,
+                    server::JobOutcome& outcome) {
+    server::FileWriter writer(hooks.place(name));
+    writer.write(std::as_bytes(std::span(contents)));
+    outcome.files.push_back({name, contents.size(), writer.commit()});
   }
 
   Error hang(const std::stop_token& stop) {

@@ -181,6 +181,40 @@ TEST_CASE("what was queued or interrupted runs again after a restart") {
   CHECK(first.version > interrupted.version);
 }
 
+TEST_CASE("an interrupted job gets its checkpoint back from the same build, and none is left when it ends") {
+  Service service(FakeRunner::Behaviour::keep_and_hang);
+  service.down();
+  service.settings.build = "0123456789abcdef-one";
+  service.up();
+  const std::string id = service.submit().id;
+  service.runner.wait_started(1);
+  CHECK_FALSE(service.runner.last_task.checkpoint.has_value());
+  service.down();
+  const std::filesystem::path kept = service.directory.path / "jobs" / id / "checkpoint-0123456789abcdef";
+  REQUIRE(std::filesystem::exists(kept));
+
+  service.runner.behaviour = FakeRunner::Behaviour::hang;
+  service.up();
+  service.runner.wait_started(2);
+  REQUIRE(service.runner.last_task.checkpoint.has_value());
+  CHECK(service.runner.last_task.checkpoint->path == kept);
+  CHECK(service.runner.last_task.checkpoint->bytes == 8);
+  service.down();
+
+  service.settings.build = "another build";
+  service.up();
+  service.runner.wait_started(3);
+  CHECK_FALSE(service.runner.last_task.checkpoint.has_value());
+  service.down();
+
+  service.settings.build = "0123456789abcdef-one";
+  service.runner.behaviour = FakeRunner::Behaviour::succeed;
+  service.up();
+  CHECK(service.finished(id).state == JobState::succeeded);
+  service.down();
+  CHECK_FALSE(std::filesystem::exists(kept));
+}
+
 TEST_CASE("a job that the service died with three times is given up") {
   Service service;
   service.down();

@@ -70,6 +70,29 @@ TEST_CASE_FIXTURE(Parent, "a child's progress, files and end arrive") {
   CHECK(outcome.peak_rss_bytes > 0);
 }
 
+TEST_CASE_FIXTURE(Parent,
+                  "of a child's checkpoints the last one stays, and they may add up to more than a job's output") {
+  task.limits.output_bytes = 8;
+  const JobOutcome outcome = run(R"(echo '{"file":{"name":"checkpoint","bytes":5}}'; printf 'early'
+    echo '{"file":{"name":"checkpoint","bytes":4}}'; printf 'late'
+    echo '{"file":{"name":"a.bin","bytes":8}}'; printf '12345678'; )" +
+                                 done);
+  CHECK_FALSE(outcome.error.has_value());
+  CHECK(contents("checkpoint") == "late");
+  REQUIRE(outcome.files.size() == 2);
+  CHECK(outcome.files[0].bytes == 4);
+}
+
+TEST_CASE_FIXTURE(Parent, "a checkpoint comes to the child behind the files") {
+  std::ofstream(directory.path / "half") << "half way";
+  task.checkpoint = server::InputFile{"checkpoint", directory.path / "half", 8};
+  const JobOutcome outcome = run("read -r line; printf '%s' \"$line\" >" + (directory.path / "line").string() +
+                                 "; head -c 12 >" + (directory.path / "rest").string() + "; " + done);
+  CHECK_FALSE(outcome.error.has_value());
+  CHECK(contents("rest") == "glTFhalf way");
+  CHECK(contents("line").find(R"("checkpoint":{"name":"checkpoint","bytes":8})") != std::string::npos);
+}
+
 TEST_CASE_FIXTURE(Parent, "the child gets the task's line and the bytes of all files, however long") {
   const std::string big(3 << 20, 'm');
   set_model(big);

@@ -169,7 +169,7 @@ TEST_CASE("Newton's method converges, its steps never raise the energy, and its 
     CAPTURE(energy.index());
     Scene scene(ellipsoid(4), 1, energy);
     const sphere::WholeLevel level = scene.level();
-    sphere::NewtonLevel newton(level, scene.pool);
+    sphere::NewtonLevel newton(level, false, scene.pool);
     double value = scene.energy(), promise = 1;
     for (int i = 0; i < 60 && promise > 1e-7; ++i) {
       promise = newton.take(scene.points);

@@ -26,8 +26,9 @@ Options with(Objective objective, double area_weight = 1) {
 
 std::vector<Vec3f> delivered(const TriangleMesh& m, const Options& options) {
   NoProgress progress;
+  NoCheckpoints none;
   const sphere::Snapped snapped =
-      sphere::snap(sphere::embed(m, options, options.threads, progress).points, m.triangles);
+      sphere::snap(sphere::embed(m, options, options.threads, progress, none).points, m.triangles);
   std::vector<Vec3f> out;
   for (const sphere::GridPoint& p : snapped.points) out.push_back(sphere::from_grid(p));
   return out;

@@ -48,9 +48,10 @@ std::vector<Vec3f> delivered(std::span<const Vec3d> points, const TriangleMesh& 
 
 std::vector<Vec3d> embedded(const TriangleMesh& m, Objective objective = Objective::isometric) {
   NoProgress progress;
+  NoCheckpoints none;
   Options options;
   options.objective = objective;
-  return sphere::canonically_turned(m, sphere::embed(m, options, 1, progress).points);
+  return sphere::canonically_turned(m, sphere::embed(m, options, 1, progress, none).points);
 }
 
 double distortion(const TriangleMesh& m) {
@@ -94,7 +95,8 @@ TEST_CASE("property: the energy never rises in a step") {
     const sphere::TriangleEnergy energy = *rc::gen::element<sphere::TriangleEnergy>(
         sphere::SymmetricDirichlet{}, sphere::Stretch{}, sphere::AreaWeighted{0.3});
     NoProgress progress;
-    std::vector<Vec3d> points = sphere::embed_by_energy(m, energy, Quality::draft, 1, progress).points;
+    NoCheckpoints none;
+    std::vector<Vec3d> points = sphere::embed_by_energy(m, energy, Quality::draft, 1, progress, none).points;
     mesh::ThreadPool pool(1);
     std::vector<sphere::Reference> references;
     sphere::compute_references(mesh::unit_positions(m), m.triangles, 1e-6, pool, references);
@@ -103,7 +105,7 @@ TEST_CASE("property: the energy never rises in a step") {
     sphere::SweepOrder order;
     order.build(stars, pool);
     const sphere::WholeLevel level{energy, m.triangles, stars, references};
-    sphere::NewtonLevel newton(level, pool);
+    sphere::NewtonLevel newton(level, false, pool);
     const auto value = [&] { return sphere::total_energy(energy, m.triangles, references, points, pool); };
     double before = value();
     for (int i = 0; i < 4; ++i) {
