@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "core/mesh/disjoint_sets.h"
 #include "core/sphere/snap.h"
@@ -163,19 +165,31 @@ public:
 
   CutSphere take(Report& report) {
     CutSphere out{{}, std::move(placed_.mesh)};
-    for (const ComponentCharts& c : components_) {
+    for (const ComponentCharts& c : components_)
       out.points.insert(out.points.end(), c.sphere().begin(), c.sphere().end());
-      if (c.turns() == 0) continue;
-      report.notes.push_back({"turned-sphere",
-                              "the sphere was turned by " + std::to_string(c.turns() * turn_angle) +
-                                  " radians to keep every triangle resolvable",
-                              "/meshes/" + std::to_string(c.component().mesh)});
-    }
+    note_turns(report);
     describe(surface_, out.cut, report);
     return out;
   }
 
 private:
+  // One note a mesh, which may have thousands of components.
+  void note_turns(Report& report) const {
+    std::map<std::uint32_t, std::pair<std::size_t, double>> turned; // mesh -> components, largest angle
+    for (const ComponentCharts& c : components_) {
+      if (c.turns() == 0) continue;
+      auto& [count, most] = turned[c.component().mesh];
+      ++count;
+      most = std::max(most, c.turns() * turn_angle);
+    }
+    for (const auto& [mesh, what] : turned) {
+      std::string message = what.first == 1 ? "the sphere was turned by " : "";
+      if (what.first > 1) message += std::to_string(what.first) + " components' spheres were turned by up to ";
+      message += std::to_string(what.second) + " radians to keep every triangle resolvable";
+      report.notes.push_back({"turned-sphere", message, "/meshes/" + std::to_string(mesh)});
+    }
+  }
+
   // Lays components flat, or turns them further where they are flat already.
   Problems next(std::span<const std::uint32_t> which, Progress& progress) {
     Problems problems;
