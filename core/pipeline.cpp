@@ -77,7 +77,7 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
     add_sphere_morph(asset, surface, delivery);
     for (DetailLevel& level : levels) add_sphere_morph(asset, surface, level.delivery);
   }
-  result.preview_png = preview(asset, surface, sphere.cut, maps.pages);
+  result.preview_png = preview(asset, surface, sphere.cut, maps.pages, request.options.threads);
   result.atlas_png = atlas_picture(maps, request.options);
   result.maps = std::move(maps.files);
   dump_bytes(dump, "4-atlas.png", result.atlas_png);

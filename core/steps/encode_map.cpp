@@ -3,6 +3,13 @@
 #include "core/asset/image_codec.h"
 
 namespace orbis {
+namespace {
+
+texture::Encoding encoding_of(MapKind kind) {
+  return kind == MapKind::color ? texture::Encoding::srgb : texture::Encoding::linear;
+}
+
+} // namespace
 
 asset::NewImage encode_map(const texture::Image& image, MapKind kind, const std::string& name, const Options& options) {
   const int quality = static_cast<int>(options.jpeg_quality);
@@ -14,12 +21,12 @@ asset::NewImage encode_map(const texture::Image& image, MapKind kind, const std:
     const std::optional<int> lossy_quality = kind == MapKind::color ? std::optional(quality) : std::nullopt;
     return {asset::encode_webp(image, lossy_quality, options.threads), "image/webp", name};
   }
-  const auto encoding = kind == MapKind::color ? texture::Encoding::srgb : texture::Encoding::linear;
-  return {asset::encode_png(image, encoding, options.threads), "image/png", name};
+  return {asset::encode_png(image, encoding_of(kind), options.threads), "image/png", name};
 }
 
-asset::NewImage encode_map(const texture::Image16& image, const std::string& name, const Options& options) {
-  return {asset::encode_png(image, texture::Encoding::linear, options.threads), "image/png", name};
+asset::NewImage encode_map(const texture::Image16& image, MapKind kind, const std::string& name,
+                           const Options& options) {
+  return {asset::encode_png(image, encoding_of(kind), options.threads), "image/png", name};
 }
 
 std::string ending_of(const asset::NewImage& image) { return image.mime_type.substr(image.mime_type.find('/') + 1); }

@@ -18,7 +18,7 @@ enum class MapKind { color, data, directions };
 [[nodiscard]] asset::NewImage encode_map(const texture::Image& image, MapKind kind, const std::string& name,
                                          const Options& options);
 // 16 bits: always PNG.
-[[nodiscard]] asset::NewImage encode_map(const texture::Image16& image, const std::string& name,
+[[nodiscard]] asset::NewImage encode_map(const texture::Image16& image, MapKind kind, const std::string& name,
                                          const Options& options);
 
 // "image/png" -> "png"

@@ -81,15 +81,18 @@ std::vector<Image> uploaded_images(const Request& request, const Limits& limits)
   return images;
 }
 
-Image paint(std::span<const Image> uploaded, const texture::CutMesh& cut, std::uint32_t page, Progress& progress) {
-  return uploaded.empty() ? texture::bake_pattern(cut, page, progress)
-                          : texture::bake_cube_map(cut, page, uploaded, progress);
+Image paint(std::span<const Image> uploaded, const texture::TexelMap& map, const texture::CutMesh& cut,
+            std::uint32_t page, const Progress& progress, mesh::ThreadPool& pool) {
+  return uploaded.empty() ? texture::bake_pattern(map, cut, page, progress, pool)
+                          : texture::bake_cube_map(map, cut, uploaded, progress, pool);
 }
 
 std::vector<std::byte> preview(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut,
-                               std::span<const Image> pages) {
+                               std::span<const Image> pages, std::uint32_t threads) {
   const mesh::TriangleMesh shown = in_scene(asset, surface);
-  return asset::encode_png(texture::draw_side_by_side(shown, cut, pages, preview_width, preview_height));
+  mesh::ThreadPool pool(threads);
+  const Image picture = texture::draw_side_by_side(shown, cut, pages, preview_width, preview_height, pool);
+  return asset::encode_png(picture, texture::Encoding::srgb, threads);
 }
 
 } // namespace orbis

@@ -10,6 +10,7 @@
 #include "core/steps/surface.h"
 #include "core/texture/atlas.h"
 #include "core/texture/image.h"
+#include "core/texture/texel_map.h"
 
 namespace orbis {
 
@@ -25,13 +26,15 @@ namespace orbis {
 // come; malformed, unsupported_format or too_large for one that cannot be read.
 [[nodiscard]] std::vector<texture::Image> uploaded_images(const Request& request, const Limits& limits);
 
-// A page with the uploaded images on it, or where there are none with the test pattern.
-[[nodiscard]] texture::Image paint(std::span<const texture::Image> uploaded, const texture::CutMesh& cut,
-                                   std::uint32_t page, Progress& progress);
+// A page with the uploaded images on it, or where there are none with the test pattern. map: the page's.
+[[nodiscard]] texture::Image paint(std::span<const texture::Image> uploaded, const texture::TexelMap& map,
+                                   const texture::CutMesh& cut, std::uint32_t page, const Progress& progress,
+                                   mesh::ThreadPool& pool);
 
 // The sphere and the model side by side, with the atlas on both, as PNG. Each mesh is seen where the scene shows it
 // first; skinned ones in their bind pose.
 [[nodiscard]] std::vector<std::byte> preview(const asset::Asset& asset, const Surface& surface,
-                                             const texture::CutMesh& cut, std::span<const texture::Image> pages);
+                                             const texture::CutMesh& cut, std::span<const texture::Image> pages,
+                                             std::uint32_t threads);
 
 } // namespace orbis

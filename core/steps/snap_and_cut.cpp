@@ -63,12 +63,12 @@ public:
 
   // Snaps the sphere to the grid and lays the charts flat; again, with the sphere turned a little further, each time it
   // is called. Throws Error{not_certified} if no turn helps.
-  void next(Progress& progress) {
+  void next(Progress& progress, mesh::ThreadPool& pool) {
     for (;;) {
       if (++turns_ >= most_turns)
         throw Error(ErrorCode::not_certified, "the map could not be delivered without a fold: " + failure_);
       try {
-        attempt(progress);
+        attempt(progress, pool);
         // What may still go wrong with it.
         failure_ = "a triangle is too small for the numbers of the atlas";
         return;
@@ -105,7 +105,7 @@ private:
   std::vector<sphere::GridPoint> sphere_;
   texture::FlatCharts charts_;
 
-  void attempt(Progress& progress) {
+  void attempt(Progress& progress, mesh::ThreadPool& pool) {
     std::vector<Vec3d> rotated(points_.begin(), points_.end());
     for (std::size_t v = 0; turns_ > 0 && v < rotated.size(); ++v) rotated[v] = turned(points_[v], turns_ * turn_angle);
     sphere::Snapped snapped = sphere::snap(rotated, mesh_.triangles);
@@ -113,7 +113,7 @@ private:
       throw Error(ErrorCode::not_certified,
                   std::to_string(snapped.folded) + " triangles are too small for the numbers of the result");
     sphere_ = std::move(snapped.points);
-    charts_ = texture::lay_flat(atlas_component(), progress);
+    charts_ = texture::lay_flat(atlas_component(), progress, pool);
   }
 };
 
@@ -134,7 +134,7 @@ Note problem_of(const Component& c, const Error& e) {
 class Atlas {
 public:
   Atlas(const asset::Asset& asset, const Surface& surface, std::span<const Vec3d> points, const Options& options)
-      : surface_(surface), texture_size_(options.texture_size) {
+      : surface_(surface), texture_size_(options.texture_size), pool_(options.threads) {
     const std::vector<std::uint32_t> pages = pages_of(asset, surface, options.atlas);
     components_.reserve(surface.components.size());
     for (std::size_t i = 0; i < surface.components.size(); ++i) {
@@ -198,7 +198,7 @@ private:
       progress.check();
       progress.report(Stage::atlas, i, which.size());
       try {
-        components_[which[i]].next(quiet);
+        components_[which[i]].next(quiet, pool_);
       } catch (const Error& e) {
         if (e.code() != ErrorCode::not_certified) throw;
         problems.emplace(which[i], problem_of(components_[which[i]].component(), e));
@@ -209,6 +209,7 @@ private:
 
   const Surface& surface_;
   std::uint32_t texture_size_;
+  mesh::ThreadPool pool_;
   std::vector<ComponentCharts> components_;
   texture::Placed placed_;
 };

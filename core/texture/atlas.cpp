@@ -40,18 +40,19 @@ double utilisation(const CutMesh& mesh) {
   return all > 0 ? used / all : 0;
 }
 
-FlatCharts lay_flat(const AtlasComponent& component, Progress& progress) {
+FlatCharts lay_flat(const AtlasComponent& component, Progress& progress, mesh::ThreadPool& pool) {
   FlatCharts charts = cut(component, progress);
   charts.is_shown = shown_charts(charts, component.delivered);
   std::vector<Vec3d> positions(charts.places.size());
   for (std::size_t v = 0; v < charts.mesh.vertices.size(); ++v)
     positions[charts.place_of[v]] = interpolated(component.positions, component.triangles, charts.mesh.vertices[v]);
-  flatten(charts, positions, component.delivered);
+  flatten(charts, positions, component.delivered, pool);
   return charts;
 }
 
 CutMesh make_atlas(const AtlasComponent& component, std::uint32_t texture_size, Progress& progress) {
-  const FlatCharts charts = lay_flat(component, progress);
+  mesh::ThreadPool here(1);
+  const FlatCharts charts = lay_flat(component, progress, here);
   Placed placed = place(std::span(&component, 1), std::span(&charts, 1), texture_size);
   if (!placed.folded.empty())
     throw Error(ErrorCode::not_certified, "a triangle is too small for the numbers of the atlas");

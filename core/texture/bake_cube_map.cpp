@@ -1,29 +1,15 @@
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numbers>
 
 #include "core/error.h"
 #include "core/texture/bake.h"
 #include "core/texture/cube_map.h"
-#include "core/texture/gutter.h"
-#include "core/texture/page_raster.h"
 #include "core/texture/sampler.h"
+#include "core/texture/shade.h"
 
 namespace orbis::texture {
 namespace {
-
-constexpr std::uint32_t report_interval = 1U << 12U; // triangles
-
-// Colours by direction on the sphere.
-class Surroundings {
-public:
-  virtual ~Surroundings() = default;
-  // Source texels across `angle` radians at d, in the direction in which there are most.
-  [[nodiscard]] virtual double texels_across(const Vec3d& d, double angle) const = 0;
-  // d: not zero, need not be normalized.
-  [[nodiscard]] virtual Light look(const Vec3d& d, std::uint32_t level) const = 0;
-};
 
 // Face coordinates to texels of a face's image.
 std::array<double, 2> texel_of(const Image& image, const FacePoint& p) {
@@ -31,72 +17,95 @@ std::array<double, 2> texel_of(const Image& image, const FacePoint& p) {
 }
 
 // A face's image with a frame of what lies beyond its border on the neighbours, so that reads across it see no edge.
-Image framed(std::span<const Image> images, Face f, std::uint32_t frame) {
+Image framed(std::span<const Image> images, std::span<const Sampler> samplers, Face f, std::uint32_t frame) {
   const Image& inner = images[f];
-  Image outer{inner.width + 2 * frame, inner.height + 2 * frame, 4, {}};
+  Image outer{inner.width + 2 * frame, inner.height + 2 * frame, inner.channels, {}};
   outer.pixels.resize(std::size_t{outer.width} * outer.height * outer.channels);
-  std::vector<Sampler> samplers;
-  for (const Image& image : images) samplers.emplace_back(image, Wrap::clamp, Wrap::clamp, 1);
-  for (std::uint32_t y = 0; y < outer.height; ++y)
-    for (std::uint32_t x = 0; x < outer.width; ++x) {
-      const std::uint32_t column = x - frame, row = y - frame; // wraps around to large numbers outside
-      if (column < inner.width && row < inner.height) {
-        store(load(inner, column, row), outer, x, y);
-        continue;
-      }
-      const Vec3d beyond =
-          direction(f, {2 * (x + 0.5 - frame) / inner.width - 1, 2 * (y + 0.5 - frame) / inner.height - 1});
-      const Face g = face_of(beyond);
-      const auto [u, v] = texel_of(images[g], project(beyond, g));
-      store(samplers[g].sample(u, v, 0), outer, x, y);
-    }
+  const auto beyond = [&](std::uint32_t x, std::uint32_t y) {
+    const Vec3d d = direction(f, {2 * (x + 0.5 - frame) / inner.width - 1, 2 * (y + 0.5 - frame) / inner.height - 1});
+    const Face g = face_of(d);
+    const auto [u, v] = texel_of(images[g], project(d, g));
+    store(samplers[g].sample(u, v, 0), outer, x, y);
+  };
+  for (std::uint32_t y = 0; y < outer.height; ++y) {
+    const bool crosses = y >= frame && y < frame + inner.height;
+    const std::uint32_t left_end = crosses ? frame : outer.width;
+    for (std::uint32_t x = 0; x < left_end; ++x) beyond(x, y);
+    if (!crosses) continue;
+    std::copy_n(inner.at(0, y - frame), std::size_t{inner.width} * inner.channels, outer.at(frame, y));
+    for (std::uint32_t x = frame + inner.width; x < outer.width; ++x) beyond(x, y);
+  }
   return outer;
 }
 
-class CubeFaces final : public Surroundings {
+// Colours by direction on the sphere: six images.
+class CubeFaces {
 public:
-  CubeFaces(std::span<const Image> images, std::uint32_t levels) : images_(images), frame_(1U << levels) {
+  explicit CubeFaces(std::span<const Image> images) : images_(images) {}
+
+  // Makes the mip levels up to this number, and what look() needs around each face.
+  void prepare(std::uint32_t levels) {
+    frame_ = 1U << levels;
+    std::vector<Sampler> inner;
+    for (const Image& image : images_) inner.emplace_back(image, Wrap::clamp, Wrap::clamp, 1);
     framed_.reserve(face_count);
-    samplers_.reserve(face_count);
     for (Face f = 0; f < face_count; ++f) {
-      framed_.push_back(framed(images, f, frame_));
+      framed_.push_back(framed(images_, inner, f, frame_));
       samplers_.emplace_back(framed_.back(), Wrap::clamp, Wrap::clamp, levels);
     }
   }
 
-  // The central projection stretches by 1 + u^2 + v^2 at most.
-  [[nodiscard]] double texels_across(const Vec3d& d, double angle) const override {
+  // Where a direction (not zero, need not be normalized) lies.
+  struct Place {
+    Face face;
+    FacePoint at;
+  };
+  [[nodiscard]] static Place place(const Vec3d& d) {
     const Face f = face_of(d);
-    const auto [u, v] = project(d, f);
-    return 0.5 * std::max(images_[f].width, images_[f].height) * (1 + u * u + v * v) * angle;
+    return {f, project(d, f)};
   }
 
-  [[nodiscard]] Light look(const Vec3d& d, std::uint32_t level) const override {
-    const Face f = face_of(d);
-    const auto [x, y] = texel_of(images_[f], project(d, f));
-    return samplers_[f].sample(x + frame_, y + frame_, level);
+  // Source texels across `angle` radians, in the direction in which there are most: the central projection stretches by
+  // 1 + u^2 + v^2 at most.
+  [[nodiscard]] double texels_across(const Place& p, double angle) const {
+    const Image& image = images_[p.face];
+    return 0.5 * std::max(image.width, image.height) * (1 + p.at.u * p.at.u + p.at.v * p.at.v) * angle;
+  }
+
+  [[nodiscard]] Light look(const Place& p, std::uint32_t level) const {
+    const auto [x, y] = texel_of(images_[p.face], p.at);
+    return samplers_[p.face].sample(x + frame_, y + frame_, level);
   }
 
 private:
   std::span<const Image> images_;
-  std::uint32_t frame_; // texels: two of the coarsest level that is read
+  std::uint32_t frame_ = 0; // texels: two of the coarsest level that is read
   std::vector<Image> framed_;
   std::vector<Sampler> samplers_;
 };
 
-class Globe final : public Surroundings {
+// One image of all directions, with the same members.
+class Globe {
 public:
-  Globe(const Image& image, std::uint32_t levels) : image_(image), sampler_(image, Wrap::repeat, Wrap::clamp, levels) {}
+  explicit Globe(const Image& image) : image_(image), sampler_(image, Wrap::repeat, Wrap::clamp, 1) {}
+
+  void prepare(std::uint32_t levels) { sampler_ = Sampler(image_, Wrap::repeat, Wrap::clamp, levels); }
+
+  struct Place {
+    double longitude, latitude;
+  };
+  [[nodiscard]] static Place place(const Vec3d& d) {
+    return {std::atan2(d.x, d.z), std::atan2(d.y, std::sqrt(d.x * d.x + d.z * d.z))};
+  }
 
   // Away from the poles, where a texel of the globe is a needle that no mip level fits.
-  [[nodiscard]] double texels_across(const Vec3d&, double angle) const override {
+  [[nodiscard]] double texels_across(const Place&, double angle) const {
     return std::max(image_.width / (2 * std::numbers::pi), image_.height / std::numbers::pi) * angle;
   }
 
-  [[nodiscard]] Light look(const Vec3d& d, std::uint32_t level) const override {
-    const double longitude = std::atan2(d.x, d.z), latitude = std::atan2(d.y, std::hypot(d.x, d.z));
-    return sampler_.sample((0.5 + longitude / (2 * std::numbers::pi)) * image_.width,
-                           (0.5 - latitude / std::numbers::pi) * image_.height, level);
+  [[nodiscard]] Light look(const Place& p, std::uint32_t level) const {
+    return sampler_.sample((0.5 + p.longitude / (2 * std::numbers::pi)) * image_.width,
+                           (0.5 - p.latitude / std::numbers::pi) * image_.height, level);
   }
 
 private:
@@ -115,16 +124,15 @@ std::uint32_t level_count(std::span<const Image> images) {
 
 // A delivered triangle in the page and on the sphere; both are linear in the barycentric weights.
 struct SphereTriangle {
-  std::array<RasterPoint, 3> corners;
   std::array<Vec3d, 3> sphere;
   Vec3d along_x, along_y; // how the direction changes from texel to texel
 
-  SphereTriangle(const CutMesh& mesh, std::uint32_t t) : corners(in_page(mesh, t)) {
-    const std::array<double, 3> dx = weight_step(corners, 1, 0), dy = weight_step(corners, 0, 1);
+  SphereTriangle() = default;
+  SphereTriangle(const CutMesh& mesh, std::uint32_t t, const TriangleInPage& place) {
     for (std::size_t k = 0; k < 3; ++k) {
       sphere[k] = Vec3d(sphere::from_grid(mesh.vertices[mesh.triangles[t][k]].sphere));
-      along_x += sphere[k] * dx[k];
-      along_y += sphere[k] * dy[k];
+      along_x += sphere[k] * place.along_x[k];
+      along_y += sphere[k] * place.along_y[k];
     }
   }
 
@@ -138,54 +146,77 @@ struct SphereTriangle {
   }
 };
 
-// The mean over the texel around d.
-Light mean(const SphereTriangle& triangle, const Vec3d& d, const Surroundings& surroundings) {
-  const Footprint footprint = footprint_of(surroundings.texels_across(d, triangle.angle(d)));
-  if (footprint.taps == 1) return surroundings.look(d, footprint.level);
-  const double n = footprint.taps;
-  Light sum{};
-  for (std::uint32_t j = 0; j < footprint.taps; ++j)
-    for (std::uint32_t i = 0; i < footprint.taps; ++i) {
-      const Light light = surroundings.look(
-          d + triangle.along_x * ((i + 0.5) / n - 0.5) + triangle.along_y * ((j + 0.5) / n - 0.5), footprint.level);
-      for (std::size_t c = 0; c < 4; ++c) sum[c] += light[c];
-    }
-  for (float& c : sum) c /= static_cast<float>(n * n);
-  return sum;
+template <class Surroundings> class SurroundingsShader {
+public:
+  SurroundingsShader(const CutMesh& mesh, const Surroundings& surroundings, Image& image)
+      : mesh_(mesh), surroundings_(surroundings), image_(image) {}
+
+  void triangle(std::uint32_t t, const TriangleInPage& place) { triangle_ = {mesh_, t, place}; }
+
+  void texel(std::uint32_t x, std::uint32_t y, const std::array<double, 3>& weights) {
+    store(mean(triangle_.at(weights)), image_, x, y);
+  }
+
+private:
+  // Over the texel around d.
+  [[nodiscard]] Light mean(const Vec3d& d) const {
+    const auto place = surroundings_.place(d);
+    const Footprint footprint = footprint_of(surroundings_.texels_across(place, triangle_.angle(d)));
+    if (footprint.taps == 1) return surroundings_.look(place, footprint.level);
+    const double n = footprint.taps;
+    Light sum{};
+    for (std::uint32_t j = 0; j < footprint.taps; ++j)
+      for (std::uint32_t i = 0; i < footprint.taps; ++i) {
+        const Vec3d tap = d + triangle_.along_x * ((i + 0.5) / n - 0.5) + triangle_.along_y * ((j + 0.5) / n - 0.5);
+        const Light light = surroundings_.look(surroundings_.place(tap), footprint.level);
+        for (std::size_t c = 0; c < 4; ++c) sum[c] += light[c];
+      }
+    for (float& c : sum) c /= static_cast<float>(n * n);
+    return sum;
+  }
+
+  const CutMesh& mesh_;
+  const Surroundings& surroundings_;
+  Image& image_;
+  SphereTriangle triangle_;
+};
+
+// The mip levels that the page's triangles read, by their corners.
+template <class Surroundings>
+std::uint32_t levels_read(const TexelMap& map, const CutMesh& mesh, const Surroundings& surroundings) {
+  std::uint32_t levels = 1;
+  for (const std::uint32_t t : map.shown()) {
+    const SphereTriangle triangle(mesh, t, map.place(t));
+    for (const Vec3d& d : triangle.sphere)
+      levels = std::max(levels,
+                        footprint_of(surroundings.texels_across(surroundings.place(d), triangle.angle(d))).level + 1);
+  }
+  return levels;
+}
+
+template <class Surroundings>
+void bake(const TexelMap& map, const CutMesh& mesh, Surroundings surroundings, std::uint32_t most_levels, Image& image,
+          const Progress& progress, mesh::ThreadPool& pool) {
+  surroundings.prepare(std::min(levels_read(map, mesh, surroundings), most_levels));
+  shade(map, pool, progress, [&] { return SurroundingsShader<Surroundings>(mesh, surroundings, image); });
 }
 
 } // namespace
 
-Image bake_cube_map(const CutMesh& mesh, std::uint32_t page, std::span<const Image> images, Progress& progress) {
+Image bake_cube_map(const TexelMap& map, const CutMesh& mesh, std::span<const Image> images, const Progress& progress,
+                    mesh::ThreadPool& pool) {
   if (images.size() != 1 && images.size() != face_count)
     throw Error(ErrorCode::invalid_option,
                 "a cube map is six images (px, nx, py, ny, pz, nz) or one equirectangular image", "texture");
   if (std::any_of(images.begin(), images.end(), [](const Image& i) { return i.width == 0 || i.height == 0; }))
     throw Error(ErrorCode::invalid_option, "an image of the cube map has no pixels", "texture");
   const bool alpha = std::any_of(images.begin(), images.end(), [](const Image& i) { return i.channels == 4; });
-  std::unique_ptr<Surroundings> surroundings;
-  if (images.size() == 1)
-    surroundings = std::make_unique<Globe>(images[0], level_count(images));
-  else
-    surroundings = std::make_unique<CubeFaces>(images, level_count(images));
-
-  Image image{mesh.pages[page].width, mesh.pages[page].height, alpha ? 4U : 3U, {}};
+  Image image{map.width(), map.height(), alpha ? 4U : 3U, {}};
   image.pixels.resize(std::size_t{image.width} * image.height * image.channels);
-  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
-  for (std::uint32_t t = 0; t < count; ++t) {
-    if (t % report_interval == 0) {
-      progress.check();
-      progress.report(Stage::bake, t, count);
-    }
-    if (mesh.page_of(t) != page) continue;
-    const SphereTriangle triangle(mesh, t);
-    rasterize(triangle.corners, image.width, image.height,
-              [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>& weights) {
-                store(mean(triangle, triangle.at(weights), *surroundings), image, x, y);
-              });
-  }
-  Gutters(mesh, page).fill(image);
-  progress.report(Stage::bake, count, count);
+  if (images.size() == 1)
+    bake(map, mesh, Globe(images[0]), level_count(images), image, progress, pool);
+  else
+    bake(map, mesh, CubeFaces(images), level_count(images), image, progress, pool);
   return image;
 }
 

@@ -2,35 +2,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <type_traits>
+
+#include "core/texture/shade.h"
 
 namespace orbis::texture {
 namespace {
 
-constexpr std::size_t rows_a_block = 8;
-
 using Weights = std::array<double, 3>;
 
-// Walks over the map on all threads, each with a shader of its own made by `make`.
-template <class Make> void shade(const TexelMap& map, mesh::ThreadPool& pool, Make make) {
-  pool.for_blocks(map.height(), rows_a_block, [&](std::size_t begin, std::size_t end) {
-    auto shader = make();
-    map.walk(begin, end, shader);
-  });
+// A number in [0, 1] as the nearest multiple of 1 / most; what is no number is 0.
+template <class Number> Number rounded(double value) {
+  constexpr double most = std::numeric_limits<Number>::max();
+  return static_cast<Number>(value > 0 ? std::min(most * value + 0.5, most) : 0.0);
 }
 
-std::uint16_t to_16_bits(double value) {
-  return static_cast<std::uint16_t>(std::lround(65535 * (value > 0 ? std::min(value, 1.0) : 0.0)));
+template <class Picture> void store_numbers(const Vec3d& value, Picture& image, std::uint32_t x, std::uint32_t y) {
+  auto* p = image.at(x, y);
+  using Number = std::remove_reference_t<decltype(*p)>;
+  p[0] = rounded<Number>(value.x);
+  p[1] = rounded<Number>(value.y);
+  p[2] = rounded<Number>(value.z);
 }
 
-void store16(const Vec3d& value, Image16& image, std::uint32_t x, std::uint32_t y) {
-  std::uint16_t* p = image.at(x, y);
-  p[0] = to_16_bits(value.x);
-  p[1] = to_16_bits(value.y);
-  p[2] = to_16_bits(value.z);
-}
-
-Image16 empty_image16(const TexelMap& map) {
-  Image16 image{map.width(), map.height(), 3, {}};
+template <class Picture> Picture empty_picture(const TexelMap& map, std::uint32_t channels) {
+  Picture image{map.width(), map.height(), channels, {}};
   image.pixels.resize(std::size_t{image.width} * image.height * image.channels);
   return image;
 }
@@ -46,40 +44,80 @@ Vec3d unit_or(const Vec3d& v, const Vec3d& otherwise) {
   return length > 0 && std::isfinite(length) ? v * (1 / length) : otherwise;
 }
 
-// The frame of a renderer: n ~ x T + y B + z N with unit T, B and N.
+// The frame of a renderer at a point of a triangle: n ~ x T + y B + z N with T, B and N brought to unit length. They
+// are kept as interpolated, at whatever length.
 struct Frame {
   Vec3d tangent, bitangent, normal;
 
-  Frame(const std::array<Tangent, 3>& tangents, const std::array<Vec3f, 3>& normals, const Weights& w)
-      : tangent(unit_or(blend(tangents, w), {1, 0, 0})), normal(unit_or(blend(normals, w), {0, 0, 1})) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      bitangent += cross(vector_of(normals[k]), vector_of(tangents[k])) * (double{tangents[k].w} * w[k]);
-    }
-    bitangent = unit_or(bitangent, {0, 1, 0});
+  [[nodiscard]] Vec3d to_space(const Vec3d& v) const {
+    return unit_or(tangent, {1, 0, 0}) * v.x + unit_or(bitangent, {0, 1, 0}) * v.y + unit_or(normal, {0, 0, 1}) * v.z;
   }
 
-  [[nodiscard]] Vec3d to_space(const Vec3d& v) const { return tangent * v.x + bitangent * v.y + normal * v.z; }
-  // The inverse, brought to unit length (Cramer: interpolated vectors are not perpendicular to each other). Where they
-  // lie in one plane no colour would be right; the flat one stays.
+  // The inverse, of any vector along n, brought to unit length (Cramer: interpolated vectors are not perpendicular to
+  // each other). With T = a T', B = b B', N = c N' and T', B', N' of unit length, x ~ n . (B' x N') is along
+  // a n . (B x N), and so on: one division is enough. Where they lie in one plane no colour would be right; the flat
+  // one stays.
   [[nodiscard]] Vec3d from_space(const Vec3d& n) const {
-    const Vec3d x = cross(bitangent, normal), y = cross(normal, tangent), z = cross(tangent, bitangent);
-    const double determinant = dot(tangent, x);
-    if (std::abs(determinant) < 1e-6) return {0, 0, 1};
-    return unit_or(Vec3d{dot(n, x), dot(n, y), dot(n, z)} * (1 / determinant), {0, 0, 1});
+    const double a = norm(tangent), b = norm(bitangent), c = norm(normal);
+    const Vec3d along_x = cross(bitangent, normal);
+    const double determinant = dot(tangent, along_x);
+    if (!(std::abs(determinant) >= 1e-6 * a * b * c)) return {0, 0, 1};
+    const Vec3d v{a * dot(n, along_x), b * dot(n, cross(normal, tangent)), c * dot(n, cross(tangent, bitangent))};
+    return unit_or(v * (determinant > 0 ? 1.0 : -1.0), {0, 0, 1});
   }
 };
 
-Frame frame_at_place(const FrameField& field, std::uint32_t texel_x, std::uint32_t texel_y, double x, double y) {
-  const std::uint32_t t = field.map->triangle(texel_x, texel_y);
-  const Weights w = field.map->place(t).nearest_weights(x, y);
-  std::array<Vec3f, 3> normals;
-  std::array<Tangent, 3> tangents;
-  for (std::size_t k = 0; k < 3; ++k) {
-    normals[k] = field.normals[field.triangles[t][k]];
-    tangents[k] = field.tangents[field.triangles[t][k]];
+// The frames at the corners of a triangle.
+class CornerFrames {
+public:
+  CornerFrames() = default;
+  CornerFrames(const std::array<Tangent, 3>& tangents, const std::array<Vec3f, 3>& normals) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      tangents_[k] = vector_of(tangents[k]);
+      normals_[k] = vector_of(normals[k]);
+      bitangents_[k] = cross(normals_[k], tangents_[k]) * double{tangents[k].w};
+    }
   }
-  return {tangents, normals, w};
-}
+  [[nodiscard]] Frame at(const Weights& w) const {
+    return {blend(tangents_, w), blend(bitangents_, w), blend(normals_, w)};
+  }
+
+private:
+  std::array<Vec3d, 3> tangents_, bitangents_, normals_;
+};
+
+// Reads a field at one place after the other; what belongs to a triangle is kept until the next.
+class FieldReader {
+public:
+  explicit FieldReader(const FrameField& field) : field_(field) {}
+
+  Frame at(std::uint32_t texel_x, std::uint32_t texel_y, double x, double y) {
+    const std::uint32_t t = field_.map->triangle(texel_x, texel_y);
+    if (t != triangle_) {
+      triangle_ = t;
+      place_ = field_.map->place(t);
+      corners_ = corners(t);
+    }
+    return corners_.at(place_.nearest_weights(x, y));
+  }
+  [[nodiscard]] CornerFrames corners(std::uint32_t t) const {
+    std::array<Vec3f, 3> normals;
+    std::array<Tangent, 3> tangents;
+    for (std::size_t k = 0; k < 3; ++k) {
+      normals[k] = field_.normals[field_.triangles[t][k]];
+      tangents[k] = field_.tangents[field_.triangles[t][k]];
+    }
+    return {tangents, normals};
+  }
+  // Whether the field lies on the triangles of this map.
+  [[nodiscard]] bool is_on(const TexelMap& map) const { return field_.map == &map; }
+
+private:
+  const FrameField& field_;
+  std::uint32_t triangle_ = TexelMap::nothing;
+  TriangleInPage place_;
+  CornerFrames corners_;
+};
 
 class TextureShader {
 public:
@@ -108,43 +146,52 @@ private:
   const CornerColor* color_ = nullptr;
 };
 
-class NormalShader {
+template <class Picture> class NormalShader {
 public:
-  NormalShader(const NormalSource& source, const FrameField* frames, Image16& image)
-      : source_(source), frames_(frames), image_(image) {}
+  NormalShader(const TexelMap& map, const NormalSource& source, const FrameField* frames, Picture& image)
+      : source_(source), image_(image) {
+    if (frames != nullptr) frames_.emplace(*frames);
+    own_frames_ = frames_ && frames_->is_on(map);
+  }
 
   void triangle(std::uint32_t t, const TriangleInPage& place) {
     triangle_ = t;
+    if (own_frames_) corners_ = frames_->corners(t);
     scale_ = source_.detail != nullptr ? source_.scales[source_.source_of[t]] : 0.0F;
-    if (scale_ != 0) footprint_ = source_.detail->footprint(t, place);
+    if (scale_ == 0) return;
+    footprint_ = source_.detail->footprint(t, place);
+    detail_frames_ = {source_.tangents[t], source_.normals[t]};
   }
 
   void texel(std::uint32_t x, std::uint32_t y, const Weights& w) {
-    Vec3d n = normal_at(w);
-    if (frames_ != nullptr) n = frame_at(x, y).from_space(n);
-    store16((n + Vec3d{1, 1, 1}) * 0.5, image_, x, y);
+    const Vec3d along = normal_at(w);
+    Vec3d n;
+    if (own_frames_)
+      n = corners_.at(w).from_space(along);
+    else if (frames_)
+      n = frames_->at(x, y, x + 0.5, y + 0.5).from_space(along);
+    else
+      n = unit_or(along, {0, 0, 1});
+    store_numbers((n + Vec3d{1, 1, 1}) * 0.5, image_, x, y);
   }
 
 private:
-  // In the space of POSITION.
+  // In the space of POSITION, of any length.
   [[nodiscard]] Vec3d normal_at(const Weights& w) const {
-    const std::array<Vec3f, 3>& normals = source_.normals[triangle_];
-    if (scale_ == 0) return unit_or(blend(normals, w), {0, 0, 1});
+    if (scale_ == 0) return blend(source_.normals[triangle_], w);
     const Light c = TextureReader::read(footprint_, w);
-    const Vec3d detail{scale_ * (2.0 * c[0] - 1), scale_ * (2.0 * c[1] - 1), 2.0 * c[2] - 1};
-    return unit_or(Frame(source_.tangents[triangle_], normals, w).to_space(detail), {0, 0, 1});
-  }
-
-  [[nodiscard]] Frame frame_at(std::uint32_t x, std::uint32_t y) const {
-    return frame_at_place(*frames_, x, y, x + 0.5, y + 0.5);
+    return detail_frames_.at(w).to_space({scale_ * (2.0 * c[0] - 1), scale_ * (2.0 * c[1] - 1), 2.0 * c[2] - 1});
   }
 
   const NormalSource& source_;
-  const FrameField* frames_;
-  Image16& image_;
+  std::optional<FieldReader> frames_;
+  bool own_frames_ = false; // those of the triangles that the map shows
+  CornerFrames corners_;    // of the triangle in work, with own_frames_
+  Picture& image_;
   std::uint32_t triangle_ = 0;
   float scale_ = 0;
   TextureReader::Footprint footprint_;
+  CornerFrames detail_frames_;
 };
 
 class PositionShader {
@@ -156,7 +203,7 @@ public:
 
   void texel(std::uint32_t x, std::uint32_t y, const Weights& w) {
     const Vec3d p = blend(*corners_, w) - box_.low, size = box_.high - box_.low;
-    store16({fraction(p.x, size.x), fraction(p.y, size.y), fraction(p.z, size.z)}, image_, x, y);
+    store_numbers({fraction(p.x, size.x), fraction(p.y, size.y), fraction(p.z, size.z)}, image_, x, y);
   }
 
 private:
@@ -171,42 +218,37 @@ private:
 } // namespace
 
 Image bake_texture(const TexelMap& map, const TextureReader& reader, std::span<const CornerColor> colors,
-                   Encoding encoding, bool alpha, mesh::ThreadPool& pool) {
-  Image image{map.width(), map.height(), alpha ? 4U : 3U, {}};
-  image.pixels.resize(std::size_t{image.width} * image.height * image.channels);
-  shade(map, pool, [&] { return TextureShader(reader, colors, encoding, image); });
+                   Encoding encoding, bool alpha, const Progress& progress, mesh::ThreadPool& pool) {
+  auto image = empty_picture<Image>(map, alpha ? 4 : 3);
+  shade(map, pool, progress, [&] { return TextureShader(reader, colors, encoding, image); });
   return image;
 }
 
-Image16 bake_normals(const TexelMap& map, const NormalSource& source, const FrameField* frames,
-                     mesh::ThreadPool& pool) {
-  Image16 image = empty_image16(map);
-  shade(map, pool, [&] { return NormalShader(source, frames, image); });
+template <class Picture>
+Picture bake_normals(const TexelMap& map, const NormalSource& source, const FrameField* frames,
+                     const Progress& progress, mesh::ThreadPool& pool) {
+  auto image = empty_picture<Picture>(map, 3);
+  shade(map, pool, progress, [&] { return NormalShader<Picture>(map, source, frames, image); });
   return image;
 }
+template Image bake_normals<Image>(const TexelMap&, const NormalSource&, const FrameField*, const Progress&,
+                                   mesh::ThreadPool&);
+template Image16 bake_normals<Image16>(const TexelMap&, const NormalSource&, const FrameField*, const Progress&,
+                                       mesh::ThreadPool&);
 
 Image16 bake_positions(const TexelMap& map, std::span<const std::array<Vec3f, 3>> positions, const Box& box,
-                       mesh::ThreadPool& pool) {
-  Image16 image = empty_image16(map);
-  shade(map, pool, [&] { return PositionShader(positions, box, image); });
+                       const Progress& progress, mesh::ThreadPool& pool) {
+  auto image = empty_picture<Image16>(map, 3);
+  shade(map, pool, progress, [&] { return PositionShader(positions, box, image); });
   return image;
 }
 
 VertexFrame frame_of(const FrameField& field, std::uint32_t texel_x, std::uint32_t texel_y, double x, double y) {
-  const Frame frame = frame_at_place(field, texel_x, texel_y, x, y);
-  const Vec3d& n = frame.normal;
-  const Vec3d t = unit_or(frame.tangent - n * dot(n, frame.tangent), cross(frame.bitangent, n));
+  const Frame frame = FieldReader(field).at(texel_x, texel_y, x, y);
+  const Vec3d n = unit_or(frame.normal, {0, 0, 1});
+  const Vec3d t = unit_or(frame.tangent - n * dot(n, frame.tangent), cross(unit_or(frame.bitangent, {0, 1, 0}), n));
   const float w = dot(cross(n, t), frame.bitangent) < 0 ? -1.0F : 1.0F;
   return {Vec3f(n), {static_cast<float>(t.x), static_cast<float>(t.y), static_cast<float>(t.z), w}};
-}
-
-Image to_8_bits(const Image16& image) {
-  Image out{image.width, image.height, image.channels, {}};
-  out.pixels.reserve(image.pixels.size());
-  for (const std::uint16_t value : image.pixels) {
-    out.pixels.push_back(static_cast<std::uint8_t>((255U * std::uint32_t{value} + 32767U) / 65535U));
-  }
-  return out;
 }
 
 } // namespace orbis::texture

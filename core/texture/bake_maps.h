@@ -1,7 +1,7 @@
 // The maps of a page: what the input's textures and geometry say, texel by texel.
 //
 // All of them walk over the same texel map; their gutters come from it. Each is divided among the pool's threads by
-// rows and is the same on any number of them.
+// rows, is the same on any number of them, and throws Error{canceled}.
 #pragma once
 
 #include <array>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/mesh/thread_pool.h"
+#include "core/progress.h"
 #include "core/texture/image.h"
 #include "core/texture/tangents.h"
 #include "core/texture/texel_map.h"
@@ -26,7 +27,7 @@ using CornerColor = std::array<std::array<float, 4>, 3>;
 //   colors  one per triangle of the page's mesh, or empty
 //   alpha   whether the image has an alpha channel
 [[nodiscard]] Image bake_texture(const TexelMap& map, const TextureReader& reader, std::span<const CornerColor> colors,
-                                 Encoding encoding, bool alpha, mesh::ThreadPool& pool);
+                                 Encoding encoding, bool alpha, const Progress& progress, mesh::ThreadPool& pool);
 
 // What the surface's normals are made of, one entry a triangle of the page's mesh.
 struct NormalSource {
@@ -57,9 +58,10 @@ struct VertexFrame {
 
 // Normals as numbers in [0, 1], (n + 1) / 2 each: in the space of POSITION, or with `frames` in the tangent frame that
 // glTF renderers build at each pixel: N, T and B = w cross(N, T) at the vertices, interpolated, each brought back to
-// unit length, n ~ x T + y B + z N.
-[[nodiscard]] Image16 bake_normals(const TexelMap& map, const NormalSource& source, const FrameField* frames,
-                                   mesh::ThreadPool& pool);
+// unit length, n ~ x T + y B + z N. Picture: Image (8 bits a channel) or Image16.
+template <class Picture>
+[[nodiscard]] Picture bake_normals(const TexelMap& map, const NormalSource& source, const FrameField* frames,
+                                   const Progress& progress, mesh::ThreadPool& pool);
 
 // Points of the surface, brought to [0, 1] by the box: component c is box.low + c (box.high - box.low) in the space of
 // POSITION, each texel's own centre. A geometry image.
@@ -67,9 +69,6 @@ struct Box {
   Vec3d low, high;
 };
 [[nodiscard]] Image16 bake_positions(const TexelMap& map, std::span<const std::array<Vec3f, 3>> positions,
-                                     const Box& box, mesh::ThreadPool& pool);
-
-// The same image with 8 bits a channel, rounded to nearest.
-[[nodiscard]] Image to_8_bits(const Image16& image);
+                                     const Box& box, const Progress& progress, mesh::ThreadPool& pool);
 
 } // namespace orbis::texture

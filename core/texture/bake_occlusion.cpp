@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/texture/color.h"
+#include "core/texture/shade.h"
 
 namespace orbis::texture {
 namespace {
@@ -112,12 +113,12 @@ float smoothed(const TexelMap& map, const std::vector<float>& seen, std::uint32_
 
 Image bake_occlusion(const TexelMap& map, std::span<const std::array<Vec3f, 3>> positions,
                      std::span<const std::array<Vec3f, 3>> normals, const Occluders& occluders, float offset,
-                     mesh::ThreadPool& pool) {
+                     const Progress& progress, mesh::ThreadPool& pool) {
   std::vector<float> seen(std::size_t{map.width()} * map.height(), 1);
-  pool.for_blocks(map.height(), 4, [&](std::size_t begin, std::size_t end) {
-    OcclusionShader shader(positions, normals, occluders, offset, map.width(), seen);
-    map.walk(begin, end, shader);
-  });
+  constexpr std::size_t texels_a_look = std::size_t{1} << 15U;
+  shade(
+      map, pool, progress, [&] { return OcclusionShader(positions, normals, occluders, offset, map.width(), seen); },
+      texels_a_look);
   Image image{map.width(), map.height(), 3, {}};
   image.pixels.reserve(3 * seen.size());
   for (std::uint32_t y = 0; y < map.height(); ++y) {

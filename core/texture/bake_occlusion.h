@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/mesh/thread_pool.h"
+#include "core/progress.h"
 #include "core/texture/image.h"
 #include "core/texture/ray_tree.h"
 #include "core/texture/texel_map.h"
@@ -28,8 +29,9 @@ struct Occluders {
 // that start into the surface's own triangle do not count.
 //   positions, normals  at the corners of the page mesh's triangles; normals are unit
 //   offset              how far above the surface rays start, in its units
+// Throws Error{canceled}.
 [[nodiscard]] Image bake_occlusion(const TexelMap& map, std::span<const std::array<Vec3f, 3>> positions,
                                    std::span<const std::array<Vec3f, 3>> normals, const Occluders& occluders,
-                                   float offset, mesh::ThreadPool& pool);
+                                   float offset, const Progress& progress, mesh::ThreadPool& pool);
 
 } // namespace orbis::texture

@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
+#include "core/texture/bands.h"
 #include "core/texture/page_raster.h"
 
 namespace orbis::texture {
 namespace {
 
-constexpr std::uint32_t subpixels = 2; // in each direction
-constexpr double margin = 0.07;        // of the viewport's smaller side
+constexpr std::uint32_t subpixels = 2;  // in each direction
+constexpr std::uint32_t band_rows = 16; // pixels, drawn by one thread at a time
+constexpr double margin = 0.07;         // of the viewport's smaller side
 constexpr std::uint32_t mip_levels = 6;
 
 // The camera's axes: x to the right, y up, z towards the viewer, who stands in front (+Z), 30 degrees to the right and
@@ -65,14 +68,14 @@ Projection project_all(std::span<const Vec3d> positions) {
   return projection;
 }
 
-// Moves and scales the outline so that it fits the viewport, in sub-pixels.
+// Moves and scales the outline so that it fits the viewport, in sub-pixels from the viewport's corner.
 std::vector<Projected> fitted(Projection projection, const Viewport& view) {
   const double border = margin * std::min(view.width, view.height);
   const double scale =
       std::min((view.width - 2 * border) / projection.width(), (view.height - 2 * border) / projection.height());
   for (Projected& p : projection.points) {
-    p.x = subpixels * (view.x + 0.5 * view.width + scale * (p.x - 0.5 * (projection.x_low + projection.x_high)));
-    p.y = subpixels * (view.y + 0.5 * view.height + scale * (p.y - 0.5 * (projection.y_low + projection.y_high)));
+    p.x = subpixels * (0.5 * view.width + scale * (p.x - 0.5 * (projection.x_low + projection.x_high)));
+    p.y = subpixels * (0.5 * view.height + scale * (p.y - 0.5 * (projection.y_low + projection.y_high)));
   }
   return std::move(projection.points);
 }
@@ -90,23 +93,25 @@ std::array<RasterPoint, 3> corners_of(const mesh::Triangle& triangle, std::span<
   return corners;
 }
 
-std::vector<Fragment> visible(std::span<const mesh::Triangle> triangles, std::span<const Projected> points,
-                              std::uint32_t width, std::uint32_t height) {
-  std::vector<Fragment> fragments(std::size_t{width} * height);
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+// What is seen at the sub-pixels of a band of rows: `rows` from `top` on.
+void find_visible(std::span<const mesh::Triangle> triangles, std::span<const std::uint32_t> in_band,
+                  std::span<const Projected> points, std::uint32_t top, std::uint32_t width, std::uint32_t rows,
+                  std::vector<Fragment>& fragments) {
+  fragments.assign(std::size_t{width} * rows, {});
+  for (const std::uint32_t t : in_band) {
     std::array<double, 3> inverse{};
     for (std::size_t k = 0; k < 3; ++k) inverse[k] = points[triangles[t][k]].inverse_depth;
-    rasterize(corners_of(triangles[t], points), width, height,
-              [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>& weights) {
-                const double depth = weights[0] * inverse[0] + weights[1] * inverse[1] + weights[2] * inverse[2];
-                Fragment& fragment = fragments[std::size_t{y} * width + x];
-                if (static_cast<float>(depth) <= fragment.inverse_depth) return;
-                // What is linear in space is linear on the screen after division by the depth.
-                fragment = {t, static_cast<float>(depth), static_cast<float>(weights[1] * inverse[1] / depth),
-                            static_cast<float>(weights[2] * inverse[2] / depth)};
-              });
+    std::array<RasterPoint, 3> corners = corners_of(triangles[t], points);
+    for (RasterPoint& corner : corners) corner.y -= top;
+    rasterize(corners, width, rows, [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>& weights) {
+      const double depth = weights[0] * inverse[0] + weights[1] * inverse[1] + weights[2] * inverse[2];
+      Fragment& fragment = fragments[std::size_t{y} * width + x];
+      if (static_cast<float>(depth) <= fragment.inverse_depth) return;
+      // What is linear in space is linear on the screen after division by the depth.
+      fragment = {t, static_cast<float>(depth), static_cast<float>(weights[1] * inverse[1] / depth),
+                  static_cast<float>(weights[2] * inverse[2] / depth)};
+    });
   }
-  return fragments;
 }
 
 // A warm key light from the upper left, a cool fill light from the right, and sky above ground.
@@ -117,7 +122,8 @@ Light shaded(const Light& color, const Vec3d& normal) {
   const double lit = std::max(dot(normal, key), 0.0), filled = std::max(dot(normal, fill), 0.0);
   const double sky = 0.26 + 0.10 * normal.y;
   static const Vec3d halfway = normalized(key + view_z);
-  const double gloss = 0.10 * std::pow(std::max(dot(normal, halfway), 0.0), 40);
+  const double at_halfway = std::max(dot(normal, halfway), 0.0), power_8 = std::pow(at_halfway, 8);
+  const double gloss = 0.10 * power_8 * power_8 * power_8 * power_8 * power_8;
   Light result{0, 0, 0, 1};
   for (std::size_t c = 0; c < 3; ++c)
     result[c] = static_cast<float>(color[c] * (sky + lit * key_color[c] + filled * fill_color[c]) + gloss);
@@ -130,7 +136,8 @@ double mip_level_of(const std::array<RasterPoint, 3>& screen, const std::array<R
     return std::abs((p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y));
   };
   const double on_screen = area(screen), in_atlas = area(atlas);
-  return on_screen > 0 && in_atlas > on_screen ? 0.5 * std::log2(in_atlas / on_screen) : 0;
+  const double texels = on_screen > 0 ? in_atlas / on_screen * subpixels * subpixels : 0;
+  return texels > 1 ? 0.5 * std::log2(texels) : 0;
 }
 
 Light between_levels(const Sampler& atlas, double x, double y, double level) {
@@ -143,6 +150,60 @@ Light between_levels(const Sampler& atlas, double x, double y, double level) {
   for (std::size_t c = 0; c < 4; ++c) light[c] = (1 - t) * light[c] + t * coarse[c];
   return light;
 }
+
+// Shades what is seen of a shape, pixel by pixel.
+class Shading {
+public:
+  Shading(const Shape& shape, std::span<const Projected> points, std::span<const Sampler> samplers)
+      : shape_(shape), points_(points), samplers_(samplers) {}
+
+  // The mean over a pixel's sub-pixels, those that show nothing counting as `behind`.
+  [[nodiscard]] Light pixel(const std::array<Fragment, subpixels * subpixels>& fragments, const Light& behind) const {
+    std::array<bool, subpixels * subpixels> done{};
+    Light sum{};
+    for (std::size_t i = 0; i < fragments.size(); ++i) {
+      if (done[i]) continue;
+      // All sub-pixels of one triangle at once, at their middle.
+      double b = 0, c = 0;
+      float count = 0;
+      for (std::size_t j = i; j < fragments.size(); ++j) {
+        if (fragments[j].triangle != fragments[i].triangle) continue;
+        done[j] = true;
+        count += 1;
+        b += double{fragments[j].b};
+        c += double{fragments[j].c};
+      }
+      const Light light =
+          fragments[i].inverse_depth == 0 ? behind : at(fragments[i].triangle, b / double{count}, c / double{count});
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += count * light[k] / (subpixels * subpixels);
+    }
+    return sum;
+  }
+
+private:
+  const Shape& shape_;
+  std::span<const Projected> points_;
+  std::span<const Sampler> samplers_;
+
+  [[nodiscard]] Light at(std::uint32_t t, double b, double c) const {
+    const mesh::Triangle& triangle = shape_.mesh.triangles[t];
+    const std::array<double, 3> weights{1 - b - c, b, c};
+    const std::array<RasterPoint, 3> in_atlas = in_page(shape_.mesh, t);
+    RasterPoint place;
+    Vec3d normal;
+    for (std::size_t k = 0; k < 3; ++k) {
+      place.x += weights[k] * in_atlas[k].x;
+      place.y += weights[k] * in_atlas[k].y;
+      normal += shape_.normals[triangle[k]] * weights[k];
+    }
+    // A model that is inside out still shows its surface to the viewer.
+    const double facing = dot(normal, view_z) < 0 ? -1 : 1;
+    const double length = norm(normal);
+    normal = length > 0 ? normal * (facing / length) : view_z;
+    const double level = mip_level_of(corners_of(triangle, points_), in_atlas);
+    return shaded(between_levels(samplers_[shape_.mesh.page_of(t)], place.x, place.y, level), normal);
+  }
+};
 
 } // namespace
 
@@ -161,8 +222,9 @@ std::vector<Vec3d> smooth_normals(const CutMesh& mesh, std::span<const Vec3d> po
   return normals;
 }
 
-Canvas::Canvas(std::uint32_t width, std::uint32_t height)
-    : width_(subpixels * width), height_(subpixels * height), lights_(std::size_t{width_} * height_) {
+Canvas::Canvas(std::uint32_t width, std::uint32_t height, std::span<const Image> pages, mesh::ThreadPool& pool)
+    : width_(width), height_(height), pool_(pool), lights_(std::size_t{width} * height) {
+  for (const Image& page : pages) samplers_.emplace_back(page, Wrap::clamp, Wrap::clamp, mip_levels);
   paint_background();
 }
 
@@ -176,32 +238,28 @@ void Canvas::paint_background() {
     }
 }
 
-void Canvas::draw(const Shape& shape, std::span<const Image> pages, const Viewport& viewport) {
-  const std::vector<Projected> points = fitted(project_all(shape.positions), viewport);
+void Canvas::draw(const Shape& shape, const Viewport& view) {
+  const std::vector<Projected> points = fitted(project_all(shape.positions), view);
   const auto& triangles = shape.mesh.triangles;
-  const std::vector<Fragment> fragments = visible(triangles, points, width_, height_);
-  std::vector<Sampler> samplers;
-  for (const Image& page : pages) samplers.emplace_back(page, Wrap::clamp, Wrap::clamp, mip_levels);
-  for (std::size_t i = 0; i < fragments.size(); ++i) {
-    const Fragment& fragment = fragments[i];
-    if (fragment.inverse_depth == 0) continue;
-    const mesh::Triangle& triangle = triangles[fragment.triangle];
-    const std::array<double, 3> weights{1.0 - fragment.b - fragment.c, fragment.b, fragment.c};
-    const std::array<RasterPoint, 3> in_atlas = in_page(shape.mesh, fragment.triangle);
-    RasterPoint at;
-    Vec3d normal;
-    for (std::size_t k = 0; k < 3; ++k) {
-      at.x += weights[k] * in_atlas[k].x;
-      at.y += weights[k] * in_atlas[k].y;
-      normal += shape.normals[triangle[k]] * weights[k];
-    }
-    // A model that is inside out still shows its surface to the viewer.
-    const double facing = dot(normal, view_z) < 0 ? -1 : 1;
-    const double length = norm(normal);
-    normal = length > 0 ? normal * (facing / length) : view_z;
-    const double level = mip_level_of(corners_of(triangle, points), in_atlas);
-    lights_[i] = shaded(between_levels(samplers[shape.mesh.page_of(fragment.triangle)], at.x, at.y, level), normal);
-  }
+  std::vector<std::uint32_t> all(triangles.size());
+  std::iota(all.begin(), all.end(), 0U);
+  const Bands bands(all, subpixels * view.height, subpixels * band_rows,
+                    [&](std::uint32_t t) { return corners_of(triangles[t], points); });
+  const Shading shading(shape, points, samplers_);
+  pool_.for_blocks(bands.count(), 1, [&](std::size_t band, std::size_t) {
+    const auto top = static_cast<std::uint32_t>(band) * band_rows;
+    const std::uint32_t rows = std::min(band_rows, view.height - top), width = subpixels * view.width;
+    std::vector<Fragment> fragments;
+    find_visible(triangles, bands[band], points, subpixels * top, width, subpixels * rows, fragments);
+    for (std::uint32_t y = 0; y < rows; ++y)
+      for (std::uint32_t x = 0; x < view.width; ++x) {
+        std::array<Fragment, subpixels * subpixels> here;
+        for (std::size_t i = 0; i < here.size(); ++i)
+          here[i] = fragments[(subpixels * y + i / subpixels) * width + subpixels * x + i % subpixels];
+        Light& light = lights_[std::size_t{view.y + top + y} * width_ + view.x + x];
+        light = shading.pixel(here, light);
+      }
+  });
 }
 
 double aspect_of(const Shape& shape) {
@@ -210,18 +268,10 @@ double aspect_of(const Shape& shape) {
 }
 
 Image Canvas::picture() const {
-  Image image{width_ / subpixels, height_ / subpixels, 3, {}};
+  Image image{width_, height_, 3, {}};
   image.pixels.resize(std::size_t{image.width} * image.height * image.channels);
-  for (std::uint32_t y = 0; y < image.height; ++y)
-    for (std::uint32_t x = 0; x < image.width; ++x) {
-      Light sum{};
-      for (std::uint32_t j = 0; j < subpixels; ++j)
-        for (std::uint32_t i = 0; i < subpixels; ++i) {
-          const Light& light = lights_[(std::size_t{subpixels} * y + j) * width_ + subpixels * x + i];
-          for (std::size_t c = 0; c < 3; ++c) sum[c] += light[c] / (subpixels * subpixels);
-        }
-      store(sum, image, x, y);
-    }
+  for (std::uint32_t y = 0; y < height_; ++y)
+    for (std::uint32_t x = 0; x < width_; ++x) store(lights_[std::size_t{y} * width_ + x], image, x, y);
   return image;
 }
 

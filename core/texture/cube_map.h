@@ -50,10 +50,11 @@ constexpr Vec3d axis_vector(Face f) {
 
 // The face that a direction (not zero) points at; on a border the one with the lower number.
 constexpr Face face_of(const Vec3d& d) {
-  Face best = 0;
-  for (Face f = 1; f < face_count; ++f)
-    if (along(d, f) > along(d, best)) best = f;
-  return best;
+  const auto magnitude = [](double v) { return v < 0 ? -v : v; };
+  const double x = magnitude(d.x), y = magnitude(d.y), z = magnitude(d.z);
+  if (x >= y && x >= z) return d.x < 0 ? 1 : 0;
+  if (y >= z) return d.y < 0 ? 3 : 2;
+  return d.z < 0 ? 5 : 4;
 }
 
 // Face coordinates, [-1, 1] inside the face, u right and v down.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/mesh/thread_pool.h"
 #include "core/texture/atlas.h"
 
 namespace orbis::texture {
@@ -34,7 +35,7 @@ struct FlatCharts {
   std::vector<bool> is_shown; // by chart: whether any of its triangles is delivered; others get no texels
 };
 
-// Cuts a component into charts and lays them flat. Throws as cut() does.
-[[nodiscard]] FlatCharts lay_flat(const AtlasComponent& component, Progress& progress);
+// Cuts a component into charts and lays them flat, these on the pool's threads. Throws as cut() and flatten() do.
+[[nodiscard]] FlatCharts lay_flat(const AtlasComponent& component, Progress& progress, mesh::ThreadPool& pool);
 
 } // namespace orbis::texture

@@ -96,14 +96,14 @@ double cycle(PlaneMesh& mesh, double part) {
   return 0;
 }
 
-// From the square of the central projection to the rectangle of the surface's own size.
-void flatten_chart(PlaneMesh& mesh) {
+// From the square of the central projection to the rectangle of the surface's own size. Returns false where a triangle
+// cannot be laid out.
+bool flatten_chart(PlaneMesh& mesh) {
   double area = 0;
   for (const PlaneReference& r : mesh.references) area += r.area;
   for (FlatPoint& p : mesh.points) p = {std::sqrt(area) * p.x, std::sqrt(area) * p.y};
   // Points within the tolerance of a border were moved onto it.
-  if (!untangle(mesh))
-    throw Error(ErrorCode::not_certified, "a triangle at a border of the cube's faces has no room in its chart");
+  if (!untangle(mesh)) return false;
   settle_in_rectangle(mesh, first_sweeps);
   double part = 1;
   for (int i = 0; i < most_cycles && cells_for(mesh.triangles.size()) > 1; ++i) {
@@ -112,14 +112,20 @@ void flatten_chart(PlaneMesh& mesh) {
     part = gain > 0 ? std::min(1.0, 2 * part) : part / 3;
   }
   settle_in_rectangle(mesh, last_sweeps);
+  return true;
 }
 
 } // namespace
 
-void flatten(FlatCharts& charts, std::span<const Vec3d> positions, std::size_t delivered) {
+void flatten(FlatCharts& charts, std::span<const Vec3d> positions, std::size_t delivered, mesh::ThreadPool& pool) {
+  std::vector<ChartMesh> meshes = split(charts, positions, delivered);
+  std::vector<std::uint8_t> is_flat(meshes.size()); // no exception may leave a pool's loop
+  pool.for_blocks(meshes.size(), 1,
+                  [&](std::size_t c, std::size_t) { is_flat[c] = flatten_chart(meshes[c].mesh) ? 1 : 0; });
+  if (std::ranges::find(is_flat, 0) != is_flat.end())
+    throw Error(ErrorCode::not_certified, "a triangle at a border of the cube's faces has no room in its chart");
   charts.sizes.clear();
-  for (ChartMesh& chart : split(charts, positions, delivered)) {
-    flatten_chart(chart.mesh);
+  for (const ChartMesh& chart : meshes) {
     const FlatCharts::Size size = size_of(chart.mesh);
     charts.sizes.push_back(size);
     for (std::size_t i = 0; i < chart.places.size(); ++i) {

@@ -1,6 +1,7 @@
 // Flat charts brought closer to the surface's own shape and size, each within a rectangle.
 #pragma once
 
+#include "core/mesh/thread_pool.h"
 #include "core/texture/flat_charts.h"
 
 namespace orbis::texture {
@@ -12,7 +13,8 @@ namespace orbis::texture {
 //
 // position: of each place, in space. Triangles from `delivered` on (by parent) only close holes: they are kept from
 // folding, and otherwise shrink. No triangle folds on the way. Throws Error{not_certified} where one cannot be laid out
-// at all, because all its corners are on one side: turning the sphere a little then helps. Deterministic.
-void flatten(FlatCharts& charts, std::span<const Vec3d> positions, std::size_t delivered);
+// at all, because all its corners are on one side: turning the sphere a little then helps. Charts are shared out to the
+// pool's threads; the same on any number of them.
+void flatten(FlatCharts& charts, std::span<const Vec3d> positions, std::size_t delivered, mesh::ThreadPool& pool);
 
 } // namespace orbis::texture

@@ -112,7 +112,8 @@ private:
   }
 };
 
-// A side of a face about as many texels long as the largest component's share of the page lets it appear.
+// A side of a face about as many texels long as the largest component's share of the page lets it appear, less what
+// the central projection stretches it by: then one read a texel does.
 std::uint32_t side_for(const CutMesh& mesh, std::uint32_t page) {
   constexpr double smallest = 64, largest = 2048;
   std::map<std::uint32_t, double> texels; // by component
@@ -120,21 +121,22 @@ std::uint32_t side_for(const CutMesh& mesh, std::uint32_t page) {
     if (c.page == page) texels[c.component] += static_cast<double>(c.width) * c.height;
   double most = 0;
   for (const auto& [component, count] : texels) most = std::max(most, count);
-  return static_cast<std::uint32_t>(std::clamp(std::sqrt(most / face_count), smallest, largest));
+  return static_cast<std::uint32_t>(std::clamp(0.8 * std::sqrt(most / face_count), smallest, largest));
 }
 
 } // namespace
 
-Image bake_pattern(const CutMesh& mesh, std::uint32_t page, Progress& progress) {
-  std::vector<Image> faces;
+Image bake_pattern(const TexelMap& map, const CutMesh& mesh, std::uint32_t page, const Progress& progress,
+                   mesh::ThreadPool& pool) {
+  std::vector<Image> faces(face_count);
   const std::uint32_t side = side_for(mesh, page);
-  for (Face f = 0; f < face_count; ++f) {
-    progress.check();
-    faces.push_back({side, side, 3, {}});
-    faces.back().pixels.resize(std::size_t{3} * side * side);
-    FacePainter(f, faces.back()).paint();
-  }
-  return bake_cube_map(mesh, page, faces, progress);
+  progress.check();
+  pool.for_blocks(face_count, 1, [&](std::size_t f, std::size_t) {
+    faces[f] = {side, side, 3, {}};
+    faces[f].pixels.resize(std::size_t{3} * side * side);
+    FacePainter(static_cast<Face>(f), faces[f]).paint();
+  });
+  return bake_cube_map(map, mesh, faces, progress, pool);
 }
 
 } // namespace orbis::texture

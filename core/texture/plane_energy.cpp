@@ -75,15 +75,20 @@ double energy_at(std::span<const Term> star, const FlatPoint& p) {
 // -H^-1 g with the eigenvalues of H replaced by their magnitudes, none below a part of the largest.
 FlatPoint descent(const Expansion& e) {
   const double mean = 0.5 * (e.hxx + e.hyy), half = 0.5 * (e.hxx - e.hyy);
-  const double radius = std::hypot(half, e.hxy);
+  const double radius = std::sqrt(half * half + e.hxy * e.hxy);
   double large = std::abs(mean + radius), small = std::abs(mean - radius);
   const double floor = smallest_eigenvalue * std::max(large, small);
   if (!(floor > 0)) return {};
   large = std::max(large, floor);
   small = std::max(small, floor);
-  // The eigenvector of mean + radius has twice the angle of (half, hxy).
-  const double angle = 0.5 * std::atan2(e.hxy, half);
-  const double ex = std::cos(angle), ey = std::sin(angle);
+  // The eigenvector of mean + radius has half the angle of (half, hxy): its larger component by the half-angle formula,
+  // the other one by that of the sine, free of cancellation.
+  double ex = 1, ey = 0;
+  if (radius > 0) {
+    const double larger = std::sqrt(0.5 * (1 + std::abs(half) / radius)), smaller = 0.5 * e.hxy / (radius * larger);
+    ex = half >= 0 ? larger : smaller;
+    ey = half >= 0 ? smaller : larger;
+  }
   const double along = (e.gx * ex + e.gy * ey) / large, across = (e.gy * ex - e.gx * ey) / small;
   return {-(along * ex - across * ey), -(along * ey + across * ex)};
 }

@@ -113,22 +113,23 @@ Rotation towards_model(const CutMesh& mesh, const Shape& model, std::uint32_t co
 } // namespace
 
 Image draw_model(const mesh::TriangleMesh& surface, const CutMesh& mesh, std::span<const Image> pages,
-                 std::uint32_t width, std::uint32_t height) {
-  Canvas canvas(width, height);
-  canvas.draw(model_shape(surface, mesh), pages, {0, 0, width, height});
+                 std::uint32_t width, std::uint32_t height, mesh::ThreadPool& pool) {
+  Canvas canvas(width, height, pages, pool);
+  canvas.draw(model_shape(surface, mesh), {0, 0, width, height});
   return canvas.picture();
 }
 
-Image draw_sphere(const CutMesh& mesh, std::span<const Image> pages, std::uint32_t width, std::uint32_t height) {
-  Canvas canvas(width, height);
+Image draw_sphere(const CutMesh& mesh, std::span<const Image> pages, std::uint32_t width, std::uint32_t height,
+                  mesh::ThreadPool& pool) {
+  Canvas canvas(width, height, pages, pool);
   const RoundMesh round(mesh, component_with_most_texels(mesh));
-  canvas.draw(round.shape(Rotation{}), pages, {0, 0, width, height});
+  canvas.draw(round.shape(Rotation{}), {0, 0, width, height});
   return canvas.picture();
 }
 
 Image draw_side_by_side(const mesh::TriangleMesh& surface, const CutMesh& mesh, std::span<const Image> pages,
-                        std::uint32_t width, std::uint32_t height) {
-  Canvas canvas(width, height);
+                        std::uint32_t width, std::uint32_t height, mesh::ThreadPool& pool) {
+  Canvas canvas(width, height, pages, pool);
   const Shape model = model_shape(surface, mesh);
   const std::uint32_t component = component_with_most_texels(mesh);
   const RoundMesh round(mesh, component);
@@ -137,8 +138,8 @@ Image draw_side_by_side(const mesh::TriangleMesh& surface, const CutMesh& mesh, 
   const double side = std::min<double>(height, width / (1 + wanted));
   const auto left = static_cast<std::uint32_t>(side), right = static_cast<std::uint32_t>(wanted * side);
   const std::uint32_t gap = (width - left - right) / 3;
-  canvas.draw(round.shape(towards_model(mesh, model, component)), pages, {gap, 0, left, height});
-  canvas.draw(model, pages, {2 * gap + left, 0, right, height});
+  canvas.draw(round.shape(towards_model(mesh, model, component)), {gap, 0, left, height});
+  canvas.draw(model, {2 * gap + left, 0, right, height});
   return canvas.picture();
 }
 

@@ -18,6 +18,13 @@ struct RasterPoint {
 // margin, so their signs are exact.
 inline constexpr int raster_bits = 16;
 
+// Rounded to nearest, halves up.
+inline std::int64_t to_raster(double texels) {
+  const double fixed = texels * (1 << raster_bits) + 0.5;
+  const auto whole = static_cast<std::int64_t>(fixed);
+  return whole - (static_cast<double>(whole) > fixed ? 1 : 0);
+}
+
 // Calls visit(x, y, weights) for each texel of the width x height grid whose centre lies in the triangle; weights are
 // the barycentric coordinates of the centre. A centre on an edge belongs to the triangle on one side of it only.
 // Orientation does not matter. |coordinates| <= 2^14.
@@ -26,8 +33,8 @@ void rasterize(const std::array<RasterPoint, 3>& corners, std::uint32_t width, s
   constexpr std::int64_t one = std::int64_t{1} << raster_bits, half = one / 2;
   std::array<std::int64_t, 3> px{}, py{};
   for (std::size_t k = 0; k < 3; ++k) {
-    px[k] = std::llround(std::ldexp(corners[k].x, raster_bits));
-    py[k] = std::llround(std::ldexp(corners[k].y, raster_bits));
+    px[k] = to_raster(corners[k].x);
+    py[k] = to_raster(corners[k].y);
   }
   std::int64_t area = (px[1] - px[0]) * (py[2] - py[0]) - (px[2] - px[0]) * (py[1] - py[0]);
   if (area == 0) return;
@@ -45,6 +52,7 @@ void rasterize(const std::array<RasterPoint, 3>& corners, std::uint32_t width, s
   const auto [x_low, x_high] = std::minmax({px[0], px[1], px[2]});
   const auto [y_low, y_high] = std::minmax({py[0], py[1], py[2]});
   const std::int64_t x_first = first(x_low), x_end = end(x_high, width);
+  if (x_first >= x_end) return;
 
   // Edge k goes from corner order[k+1] to order[k+2]; its function is the weight of order[k], times the area:
   // E(x, y) = dx (y - y0) - dy (x - x0), positive inside.
@@ -59,6 +67,10 @@ void rasterize(const std::array<RasterPoint, 3>& corners, std::uint32_t width, s
     edges[k] = {dx, dy, px[from], py[from], owns_its_points ? 0 : 1};
   }
 
+  // In a wide box each edge says by a division where its row of texels begins or ends; in a narrow one it is cheaper to
+  // ask at every texel.
+  constexpr std::int64_t narrow = 8;
+  const bool divide = x_end - x_first > narrow;
   const double scale = 1 / static_cast<double>(area);
   for (std::int64_t y = first(y_low), y_end = end(y_high, height); y < y_end; ++y) {
     std::int64_t from = x_first, to = x_end;
@@ -66,6 +78,7 @@ void rasterize(const std::array<RasterPoint, 3>& corners, std::uint32_t width, s
     for (std::size_t k = 0; k < 3; ++k) {
       const Edge& e = edges[k];
       at_zero[k] = e.dx * ((y << raster_bits) + half - e.y0) - e.dy * (half - e.x0);
+      if (!divide) continue;
       // at_zero - bias - x dy one >= 0
       const std::int64_t slack = at_zero[k] - e.bias, step = e.dy << raster_bits;
       const auto floor_of = [](std::int64_t n, std::int64_t d) { return n >= 0 ? n / d : -((-n + d - 1) / d); };
@@ -74,6 +87,8 @@ void rasterize(const std::array<RasterPoint, 3>& corners, std::uint32_t width, s
       if (step == 0 && slack < 0) to = from;
     }
     for (std::int64_t x = from; x < to; ++x) {
+      const auto outside = [&](std::size_t k) { return at_zero[k] - edges[k].bias < x * (edges[k].dy << raster_bits); };
+      if (!divide && (outside(0) || outside(1) || outside(2))) continue;
       std::array<double, 3> weights{};
       for (std::size_t k = 0; k < 3; ++k)
         weights[order[k]] = scale * static_cast<double>(at_zero[k] - x * (edges[k].dy << raster_bits));

@@ -12,16 +12,35 @@ constexpr double most_taps = 4;
 // repeats where it should.
 double wrapped(double x, double size, Wrap wrap) {
   if (!std::isfinite(x)) return 0;
-  if (wrap == Wrap::clamp) return std::clamp(x, 0.0, size);
+  if (x >= 0 && x < size) return x;
+  if (wrap == Wrap::clamp) return x < 0 ? 0 : size;
   const double period = wrap == Wrap::repeat ? size : 2 * size;
   x -= period * std::floor(x / period);
   return wrap == Wrap::mirror && x > size ? period - x : x;
 }
 
-// The texel beside the image's edge: -1 or size, else itself.
-std::uint32_t neighbour(std::int64_t i, std::uint32_t size, Wrap wrap) {
-  if (wrap == Wrap::repeat) return static_cast<std::uint32_t>((i + size) % size);
-  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(i, 0, std::int64_t{size} - 1));
+// The two texels that a place, in texels, lies between, and how far it is from the first to the second.
+struct Between {
+  std::uint32_t first, second;
+  float part;
+};
+
+// at: in [0, size], wrapped already. Beside the image's edge lies, where it repeats, the other edge.
+inline Between between(double at, std::uint32_t size, Wrap wrap) {
+  const double from_first_centre = at - 0.5;
+  const auto i = static_cast<std::int64_t>(at + 0.5) - 1; // rounded down: the sum is not negative
+  const auto part = static_cast<float>(from_first_centre - static_cast<double>(i));
+  if (i >= 0 && i + 1 < std::int64_t{size}) {
+    const auto first = static_cast<std::uint32_t>(i);
+    return {first, first + 1, part};
+  }
+  const std::int64_t last = std::int64_t{size} - 1;
+  const auto edge = [&](std::int64_t k) {
+    if (k < 0) return wrap == Wrap::repeat ? last : 0;
+    if (k > last) return wrap == Wrap::repeat ? k - last - 1 : last;
+    return k;
+  };
+  return {static_cast<std::uint32_t>(edge(i)), static_cast<std::uint32_t>(edge(i + 1)), part};
 }
 
 } // namespace
@@ -47,7 +66,8 @@ Footprint footprint_of(double texels) {
     texels /= 2;
     ++footprint.level;
   }
-  footprint.taps = static_cast<std::uint32_t>(std::max(std::ceil(texels - 1e-3), 1.0));
+  // A bilinear read is a mean over two texels, at least half of that for its own.
+  footprint.taps = static_cast<std::uint32_t>(std::max(std::ceil(texels - 0.5), 1.0));
   return footprint;
 }
 
@@ -62,20 +82,17 @@ Sampler::Sampler(const Image& image, Wrap wrap_u, Wrap wrap_v, std::uint32_t lev
 Light Sampler::sample(double x, double y, std::uint32_t level) const {
   level = std::min(level, static_cast<std::uint32_t>(mips_.size()));
   const Image& image = level == 0 ? *image_ : mips_[level - 1];
-  const double scale = 1.0 / static_cast<double>(std::uint64_t{1} << level);
-  const double column = scale * wrapped(x, image_->width, wrap_u_) - 0.5;
-  const double row = scale * wrapped(y, image_->height, wrap_v_) - 0.5;
-  const double left = std::floor(column), top = std::floor(row);
-  const auto s = static_cast<float>(column - left), t = static_cast<float>(row - top);
-  const auto i = static_cast<std::int64_t>(left), j = static_cast<std::int64_t>(top);
-  const std::uint32_t x0 = neighbour(i, image.width, wrap_u_), x1 = neighbour(i + 1, image.width, wrap_u_);
-  const std::uint32_t y0 = neighbour(j, image.height, wrap_v_), y1 = neighbour(j + 1, image.height, wrap_v_);
-  const Light a = load(image, x0, y0, encoding_), b = load(image, x1, y0, encoding_);
-  const Light c = load(image, x0, y1, encoding_), d = load(image, x1, y1, encoding_);
-  Light result{};
-  for (std::size_t k = 0; k < 4; ++k)
-    result[k] = (1 - t) * ((1 - s) * a[k] + s * b[k]) + t * ((1 - s) * c[k] + s * d[k]);
-  return result;
+  const double scale = level == 0 ? 1.0 : 1.0 / static_cast<double>(std::uint64_t{1} << level);
+  const auto [x0, x1, s] = between(scale * wrapped(x, image_->width, wrap_u_), image.width, wrap_u_);
+  const auto [y0, y1, t] = between(scale * wrapped(y, image_->height, wrap_v_), image.height, wrap_v_);
+  const std::array<float, 256>& value = encoding_ == Encoding::srgb ? srgb_tables.linear : srgb_tables.fraction;
+  const std::uint8_t *a = image.at(x0, y0), *b = image.at(x1, y0), *c = image.at(x0, y1), *d = image.at(x1, y1);
+  const auto mixed = [&](const std::array<float, 256>& of, std::size_t k) {
+    const float top = of[a[k]] + s * (of[b[k]] - of[a[k]]), bottom = of[c[k]] + s * (of[d[k]] - of[c[k]]);
+    return top + t * (bottom - top);
+  };
+  return {mixed(value, 0), mixed(value, 1), mixed(value, 2),
+          image.channels == 4 ? mixed(srgb_tables.fraction, 3) : 1.0F};
 }
 
 Light Sampler::nearest(double x, double y) const {

@@ -2,47 +2,12 @@
 
 #include <algorithm>
 
+#include "core/texture/bands.h"
+
 namespace orbis::texture {
 namespace {
 
 constexpr std::uint32_t band_rows = 32; // rasterised by one thread at a time
-
-// The bands that a triangle reaches into: [first, end).
-struct Bands {
-  std::uint32_t first = 0, end = 0;
-};
-
-Bands bands_of(const std::array<RasterPoint, 3>& corners, std::uint32_t height) {
-  const auto [low, high] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
-  const double last = height - 1.0;
-  const auto first = static_cast<std::uint32_t>(std::clamp(low - 1, 0.0, last));
-  const auto end = static_cast<std::uint32_t>(std::clamp(high + 1, 0.0, last));
-  return {first / band_rows, end / band_rows + 1};
-}
-
-// The triangles of each band, one list behind the other, ascending in each.
-struct Buckets {
-  std::vector<std::uint32_t> first; // band -> its first entry; one past the end
-  std::vector<std::uint32_t> triangles;
-};
-
-template <class BandsOf>
-Buckets sort_into_bands(std::span<const std::uint32_t> shown, std::uint32_t bands, BandsOf bands_of_triangle) {
-  Buckets out;
-  out.first.assign(bands + 1, 0);
-  for (const std::uint32_t t : shown) {
-    const Bands reach = bands_of_triangle(t);
-    for (std::uint32_t b = reach.first; b < reach.end; ++b) ++out.first[b + 1];
-  }
-  for (std::uint32_t b = 0; b < bands; ++b) out.first[b + 1] += out.first[b];
-  out.triangles.resize(out.first[bands]);
-  std::vector<std::uint32_t> next(out.first.begin(), out.first.end() - 1);
-  for (const std::uint32_t t : shown) {
-    const Bands reach = bands_of_triangle(t);
-    for (std::uint32_t b = reach.first; b < reach.end; ++b) out.triangles[next[b]++] = t;
-  }
-  return out;
-}
 
 } // namespace
 
@@ -75,17 +40,23 @@ std::array<double, 3> TriangleInPage::nearest_weights(double x, double y) const 
 TexelMap::TexelMap(const PageMesh& mesh, std::uint32_t width, std::uint32_t height, mesh::ThreadPool& pool)
     : mesh_(mesh), width_(width), height_(height), triangle_(std::size_t{width} * height, nothing),
       covered_(triangle_.size(), 0) {
-  cover(mesh, pool);
+  cover(pool);
   covered_texels_ = static_cast<std::uint64_t>(std::count(covered_.begin(), covered_.end(), std::uint8_t{1}));
   spread();
 }
 
-TriangleInPage TexelMap::place(std::uint32_t triangle) const {
-  TriangleInPage out;
+std::array<RasterPoint, 3> TexelMap::corners(std::uint32_t triangle) const {
+  std::array<RasterPoint, 3> out;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec2f& uv = mesh_.uv[mesh_.triangles[triangle][k]];
-    out.corners[k] = {double{uv.x} * width_, double{uv.y} * height_};
+    out[k] = {double{uv.x} * width_, double{uv.y} * height_};
   }
+  return out;
+}
+
+TriangleInPage TexelMap::place(std::uint32_t triangle) const {
+  TriangleInPage out;
+  out.corners = corners(triangle);
   const auto& p = out.corners;
   const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
   out.at_corner_0 = {1, 0, 0};
@@ -98,16 +69,12 @@ TriangleInPage TexelMap::place(std::uint32_t triangle) const {
   return out;
 }
 
-void TexelMap::cover(const PageMesh& mesh, mesh::ThreadPool& pool) {
-  const auto corners = [&](std::uint32_t t) { return place(t).corners; };
-  const std::uint32_t bands = (height_ + band_rows - 1) / band_rows;
-  const Buckets buckets =
-      sort_into_bands(mesh.shown, bands, [&](std::uint32_t t) { return bands_of(corners(t), height_); });
-  pool.for_blocks(bands, 1, [&](std::size_t band, std::size_t) {
+void TexelMap::cover(mesh::ThreadPool& pool) {
+  const Bands bands(mesh_.shown, height_, band_rows, [&](std::uint32_t t) { return corners(t); });
+  pool.for_blocks(bands.count(), 1, [&](std::size_t band, std::size_t) {
     const auto top = static_cast<std::uint32_t>(band) * band_rows;
     const std::uint32_t rows = std::min(band_rows, height_ - top);
-    for (std::uint32_t i = buckets.first[band]; i < buckets.first[band + 1]; ++i) {
-      const std::uint32_t t = buckets.triangles[i];
+    for (const std::uint32_t t : bands[band]) {
       std::array<RasterPoint, 3> p = corners(t);
       for (RasterPoint& corner : p) corner.y -= top; // exact: both are multiples of the smaller one's last place
       rasterize(p, width_, rows, [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>&) {

@@ -61,6 +61,7 @@ public:
   }
   [[nodiscard]] std::uint64_t covered_texels() const { return covered_texels_; }
   [[nodiscard]] TriangleInPage place(std::uint32_t triangle) const;
+  [[nodiscard]] std::span<const std::uint32_t> shown() const { return mesh_.shown; }
 
   // Walks over the texels of rows [begin, end): shader.triangle(t, place) where another triangle begins, then
   // shader.texel(x, y, weights) for each of its texels.
@@ -83,7 +84,8 @@ public:
   }
 
 private:
-  void cover(const PageMesh& mesh, mesh::ThreadPool& pool);
+  [[nodiscard]] std::array<RasterPoint, 3> corners(std::uint32_t triangle) const;
+  void cover(mesh::ThreadPool& pool);
   void spread();
 
   PageMesh mesh_;

@@ -80,7 +80,7 @@ Image bake(const Sheet& sheet, std::span<const CornerUv> uv, std::span<const std
   ThreadPool pool(threads);
   const TexelMap map(sheet.page(), size, size, pool);
   const TextureReader reader(map, sheet.all, uv, source_of, sources, encoding);
-  return bake_texture(map, reader, colors, encoding, alpha, pool);
+  return bake_texture(map, reader, colors, encoding, alpha, NoProgress(), pool);
 }
 
 Vec3d decoded(const Image16& image, std::uint32_t x, std::uint32_t y) {
@@ -230,7 +230,7 @@ TEST_CASE("a position map gives each texel's point to 16 bits") {
   const TexelMap map(sheet.page(), size, size, pool);
   const auto points = sheet.corners<Vec3f>([&](std::uint32_t v) { return sheet.normal(v) * 7.0F; });
   const Box box{{-7, -7, -7}, {7, 7, 7}};
-  const Image16 image = bake_positions(map, points, box, pool);
+  const Image16 image = bake_positions(map, points, box, NoProgress(), pool);
   for (std::uint32_t y = 0; y < size; ++y)
     for (std::uint32_t x = 0; x < size; ++x) {
       const auto w = weights_at(map, x, y);
@@ -254,7 +254,7 @@ TEST_CASE("a normal map gives back the full surface's normals, on its own frames
   const auto normals = fine.corners<Vec3f>([&](std::uint32_t v) { return rough[v]; });
   const std::vector<std::uint32_t> source_of(fine.triangles.size(), 0);
   const NormalSource source{normals, {}, nullptr, {}, source_of};
-  const Image16 in_space = bake_normals(map, source, nullptr, pool);
+  const Image16 in_space = bake_normals<Image16>(map, source, nullptr, NoProgress(), pool);
 
   for (const bool own : {true, false}) {
     CAPTURE(own);
@@ -269,7 +269,7 @@ TEST_CASE("a normal map gives back the full surface's normals, on its own frames
     }
     const TexelMap& frames_map = own ? map : coarse_map;
     const FrameField frames{&frames_map, sheet.triangles, frame_normals, frame_tangents};
-    const Image16 tangent_space = bake_normals(map, source, &frames, pool);
+    const Image16 tangent_space = bake_normals<Image16>(map, source, &frames, NoProgress(), pool);
     double worst = 0;
     for (std::uint32_t y = 20; y < 108; ++y)
       for (std::uint32_t x = 20; x < 108; ++x) {
@@ -307,7 +307,7 @@ TEST_CASE("the input's own normal map is turned with its tangents, and scaled") 
   for (const float scale : {1.0F, 0.5F, 0.0F}) {
     CAPTURE(scale);
     const NormalSource source{normals, tangents, &reader, std::span(&scale, 1), source_of};
-    const Vec3d n = decoded(bake_normals(map, source, nullptr, pool), 64, 64);
+    const Vec3d n = decoded(bake_normals<Image16>(map, source, nullptr, NoProgress(), pool), 64, 64);
     CHECK(n.x == doctest::Approx(0).epsilon(0.01).scale(1));
     CHECK(n.y / n.z == doctest::Approx(scale * std::tan(std::numbers::pi / 6)).epsilon(0.01));
   }
@@ -339,7 +339,7 @@ TEST_CASE("a plain sees the whole sky, and half of it at the foot of a high wall
   const std::vector<RayTree> trees{RayTree(ground, triangle), RayTree(wall, triangle)};
   for (const std::uint32_t which : {0U, 1U}) {
     const std::vector<std::uint32_t> tree_of(sheet.triangles.size(), which);
-    const Image image = bake_occlusion(map, positions, normals, {trees, tree_of}, 1e-4F, pool);
+    const Image image = bake_occlusion(map, positions, normals, {trees, tree_of}, 1e-4F, NoProgress(), pool);
     for (std::uint32_t y = 0; y < 32; ++y)
       for (std::uint32_t x = 0; x < 32; ++x)
         CHECK(std::abs(image.at(x, y)[0] - (which == 0 ? 255 : 128)) <= (which == 0 ? 0 : 20));

@@ -60,20 +60,18 @@ int worst_difference(const CutMesh& mesh, const Image& image) {
 } // namespace
 
 TEST_CASE("six images of any sizes are reproduced by direction, without a seam at the borders") {
-  NoProgress progress;
   for (const std::uint32_t size : {64U, 200U, 700U}) {
     CAPTURE(size);
     std::vector<Image> images;
     for (Face f = 0; f < face_count; ++f) images.push_back(face_image(f, size + 5 * f, size + 3, 3));
     const CutMesh mesh = atlas_of(subdivided(icosahedron(), 2), 384);
-    const Image atlas = bake_cube_map(mesh, 0, images, progress);
+    const Image atlas = surrounded(mesh, images);
     CHECK(atlas.channels == 3);
     CHECK(worst_difference(mesh, atlas) <= 4);
   }
 }
 
 TEST_CASE("one equirectangular image is reproduced by direction: +Z in its middle, +X to the right, +Y on top") {
-  NoProgress progress;
   for (const std::uint32_t width : {256U, 1500U}) {
     CAPTURE(width);
     Image globe = blank(width, width / 2, 4);
@@ -86,18 +84,17 @@ TEST_CASE("one equirectangular image is reproduced by direction: +Z in its middl
               globe, x, y);
       }
     const CutMesh mesh = atlas_of(subdivided(icosahedron(), 2), 384);
-    const Image atlas = bake_cube_map(mesh, 0, std::span(&globe, 1), progress);
+    const Image atlas = surrounded(mesh, std::span(&globe, 1));
     CHECK(atlas.channels == 4);
     CHECK(worst_difference(mesh, atlas) <= 4);
   }
 }
 
 TEST_CASE("any other number of images, or one without pixels, is refused") {
-  NoProgress progress;
   std::vector<Image> images(2, face_image(0, 8, 8, 3));
-  CHECK_THROWS_AS((void)bake_cube_map(atlas_of(octahedron(), 64), 0, images, progress), Error);
+  CHECK_THROWS_AS((void)surrounded(atlas_of(octahedron(), 64), images), Error);
   images.assign(1, Image{});
-  CHECK_THROWS_AS((void)bake_cube_map(atlas_of(octahedron(), 64), 0, images, progress), Error);
+  CHECK_THROWS_AS((void)surrounded(atlas_of(octahedron(), 64), images), Error);
 }
 
 TEST_CASE("wrap modes move the reads as a renderer would") {
@@ -118,21 +115,21 @@ TEST_CASE("wrap modes move the reads as a renderer would") {
   CHECK(read(Wrap::repeat, NAN, INFINITY) == read(Wrap::repeat, 0, 0));
 }
 
-TEST_CASE("baking twice gives the same bytes, and stops when it is asked to") {
+TEST_CASE("pictures are the same on any number of threads, and stop when they are asked to") {
   const SphereMesh mesh = subdivided(icosahedron(), 1);
   const CutMesh cut_mesh = atlas_of(mesh, 256);
   const Image image = face_image(2, 50, 100, 3);
-  NoProgress progress;
-  CHECK(bake_pattern(cut_mesh, 0, progress).pixels == bake_pattern(cut_mesh, 0, progress).pixels);
-  CHECK(bake_cube_map(cut_mesh, 0, std::span(&image, 1), progress).pixels ==
-        bake_cube_map(cut_mesh, 0, std::span(&image, 1), progress).pixels);
+  const NoProgress progress;
+  CHECK(patterned(cut_mesh).pixels == patterned(cut_mesh, progress, 3).pixels);
+  CHECK(surrounded(cut_mesh, std::span(&image, 1)).pixels ==
+        surrounded(cut_mesh, std::span(&image, 1), progress, 3).pixels);
 
   struct Canceled final : Progress {
     void report(Stage, std::uint64_t, std::uint64_t) override {}
     [[nodiscard]] bool cancelled() const override { return true; }
   } canceled;
-  CHECK_THROWS_AS((void)bake_pattern(cut_mesh, 0, canceled), Error);
-  CHECK_THROWS_AS((void)bake_cube_map(cut_mesh, 0, std::span(&image, 1), canceled), Error);
+  CHECK_THROWS_AS((void)patterned(cut_mesh, canceled), Error);
+  CHECK_THROWS_AS((void)surrounded(cut_mesh, std::span(&image, 1), canceled), Error);
   const std::vector<GridPoint> grid = mesh.grid();
   const std::vector<Vec3f> positions(grid.size());
   CHECK_THROWS_AS((void)make_atlas({mesh.triangles, mesh.triangles, grid, positions, 1}, 64, canceled), Error);

@@ -19,10 +19,7 @@ using namespace sphere_meshes;
 
 namespace {
 
-Image pattern(std::uint32_t size) {
-  NoProgress progress;
-  return bake_pattern(atlas_of(subdivided(octahedron(), 2), size), 0, progress);
-}
+Image pattern(std::uint32_t size) { return patterned(atlas_of(subdivided(octahedron(), 2), size)); }
 
 } // namespace
 
@@ -42,8 +39,7 @@ TEST_CASE("a face is seen from outside: u to the right, v down, and neighbours i
 
 TEST_CASE("every face of the pattern has its own two colours") {
   const CutMesh mesh = atlas_of(subdivided(octahedron(), 3), 1024);
-  NoProgress progress;
-  const Image image = bake_pattern(mesh, 0, progress);
+  const Image image = patterned(mesh);
   const std::vector<Vec3d> shown = directions(mesh);
   std::array<std::map<std::array<int, 3>, int>, 6> colours;
   for (std::size_t i = 0; i < shown.size(); ++i) {

@@ -7,7 +7,6 @@
 
 #include "atlas_of.h"
 #include "core/texture/flat_charts.h"
-#include "core/texture/gutter.h"
 #include "core/texture/place.h"
 #include "core/texture/skyline.h"
 
@@ -27,6 +26,7 @@ struct Spheres {
 
   Spheres(const std::vector<double>& radii, std::uint32_t pages) {
     NoProgress progress;
+    orbis::mesh::ThreadPool pool(1);
     for (const double radius : radii) {
       positions.emplace_back();
       for (const Vec3d& p : mesh.points) positions.back().emplace_back(p * radius);
@@ -35,7 +35,7 @@ struct Spheres {
       components.push_back({mesh.triangles, mesh.triangles, grid, positions[i], mesh.triangles.size(),
                             i * static_cast<std::uint32_t>(grid.size()),
                             i * static_cast<std::uint32_t>(mesh.triangles.size()), i % pages});
-      charts.push_back(lay_flat(components.back(), progress));
+      charts.push_back(lay_flat(components.back(), progress, pool));
     }
   }
 };
@@ -151,29 +151,9 @@ TEST_CASE("triangles that only close a hole are not delivered, and their charts 
       }));
   open.corners = std::span(whole.mesh.triangles).first(open.delivered);
   NoProgress progress;
-  const FlatCharts charts = lay_flat(open, progress);
+  mesh::ThreadPool pool(1);
+  const FlatCharts charts = lay_flat(open, progress, pool);
   const CutMesh mesh = place(std::span(&open, 1), std::span(&charts, 1), 512).mesh;
   CHECK(mesh.charts.size() == 5);
   for (const std::uint32_t parent : mesh.parent) CHECK(parent < open.delivered);
-}
-
-TEST_CASE("gutters repeat the nearest covered texel, over the whole page") {
-  const CutMesh mesh = atlas_of(subdivided(octahedron(), 2), 128);
-  const Page& page = mesh.pages[0];
-  const std::vector<Vec3d> shown = directions(mesh);
-  const auto covered = [&](std::size_t i) { return !(shown[i] == Vec3d{}); };
-  const auto distance = [&](std::size_t i, std::size_t j) {
-    return std::hypot(double(i % page.width) - double(j % page.width), double(i / page.width) - double(j / page.width));
-  };
-  std::vector<std::size_t> from(shown.size(), shown.size());
-  Gutters(mesh, 0).for_each([&](std::uint32_t to, std::uint32_t source) { from[to] = source; });
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    CHECK(covered(i) == (from[i] == shown.size()));
-    if (covered(i)) continue;
-    REQUIRE(covered(from[i]));
-    double nearest = 1e9;
-    for (std::size_t j = 0; j < shown.size(); ++j)
-      if (covered(j)) nearest = std::min(nearest, distance(i, j));
-    CHECK(distance(i, from[i]) <= nearest + 0.75);
-  }
 }

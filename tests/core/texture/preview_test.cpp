@@ -23,10 +23,9 @@ struct Model {
   std::vector<Image> atlas;
 
   explicit Model(double length) : cut_mesh(atlas_of(sphere, 256)) {
-    NoProgress progress;
     for (const Vec3d& p : sphere.points) surface.positions.push_back(Vec3f(Vec3d{length * p.x, p.y, p.z}));
     surface.triangles = sphere.triangles;
-    atlas.push_back(bake_pattern(cut_mesh, 0, progress));
+    atlas.push_back(patterned(cut_mesh));
   }
 };
 
@@ -43,15 +42,18 @@ std::size_t painted(const Image& image, std::uint32_t from, std::uint32_t to) {
   return n;
 }
 
+mesh::ThreadPool pool(1);
+
 } // namespace
 
-TEST_CASE("the model fills its picture without touching the edge, twice the same") {
+TEST_CASE("the model fills its picture without touching the edge, the same on any number of threads") {
   const Model model(2);
-  const Image picture = draw_model(model.surface, model.cut_mesh, model.atlas, 320, 240);
+  const Image picture = draw_model(model.surface, model.cut_mesh, model.atlas, 320, 240, pool);
   CHECK(picture.width == 320);
   CHECK(picture.height == 240);
   CHECK(picture.channels == 3);
-  CHECK(picture.pixels == draw_model(model.surface, model.cut_mesh, model.atlas, 320, 240).pixels);
+  mesh::ThreadPool three(3);
+  CHECK(picture.pixels == draw_model(model.surface, model.cut_mesh, model.atlas, 320, 240, three).pixels);
   CHECK(painted(picture, 0, 320) > 320 * 240 / 5);
   for (std::uint32_t x = 0; x < 320; ++x) {
     CHECK_FALSE(is_painted(picture, x, 0));
@@ -65,8 +67,8 @@ TEST_CASE("the model fills its picture without touching the edge, twice the same
 
 TEST_CASE("a sphere drawn as a model and drawn as the sphere look the same") {
   const Model model(1);
-  const Image as_model = draw_model(model.surface, model.cut_mesh, model.atlas, 200, 200);
-  const Image as_sphere = draw_sphere(model.cut_mesh, model.atlas, 200, 200);
+  const Image as_model = draw_model(model.surface, model.cut_mesh, model.atlas, 200, 200, pool);
+  const Image as_sphere = draw_sphere(model.cut_mesh, model.atlas, 200, 200, pool);
   double difference = 0;
   for (std::size_t i = 0; i < as_model.pixels.size(); ++i)
     difference += std::abs(as_model.pixels[i] - as_sphere.pixels[i]);
@@ -75,7 +77,7 @@ TEST_CASE("a sphere drawn as a model and drawn as the sphere look the same") {
 
 TEST_CASE("side by side there is a sphere on the left and a model on the right") {
   const Model model(1.5);
-  const Image picture = draw_side_by_side(model.surface, model.cut_mesh, model.atlas, 480, 200);
+  const Image picture = draw_side_by_side(model.surface, model.cut_mesh, model.atlas, 480, 200, pool);
   CHECK(painted(picture, 0, 200) > 8000);
   CHECK(painted(picture, 240, 480) > 8000);
 }
@@ -83,9 +85,9 @@ TEST_CASE("side by side there is a sphere on the left and a model on the right")
 TEST_CASE("a model that is flat, or inside out, is drawn all the same") {
   Model model(1);
   for (auto& t : model.cut_mesh.triangles) std::swap(t[1], t[2]);
-  CHECK(painted(draw_model(model.surface, model.cut_mesh, model.atlas, 100, 100), 0, 100) > 2000);
+  CHECK(painted(draw_model(model.surface, model.cut_mesh, model.atlas, 100, 100, pool), 0, 100) > 2000);
   for (Vec3f& p : model.surface.positions) p.z = 0;
-  CHECK(painted(draw_model(model.surface, model.cut_mesh, model.atlas, 100, 100), 0, 100) > 1000);
+  CHECK(painted(draw_model(model.surface, model.cut_mesh, model.atlas, 100, 100, pool), 0, 100) > 1000);
 }
 
 TEST_CASE("the best rotation undoes a rotation") {

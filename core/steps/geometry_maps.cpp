@@ -1,0 +1,158 @@
+#include "core/steps/geometry_maps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/steps/shared_frames.h"
+#include "core/steps/tangent_frames.h"
+#include "core/texture/bake_occlusion.h"
+
+namespace orbis {
+namespace {
+
+using asset::TextureSlot;
+using texture::Encoding;
+using texture::Image;
+
+texture::Box box_of(const std::vector<Vec3f>& positions) {
+  texture::Box box{Vec3d(positions.front()), Vec3d(positions.front())};
+  for (const Vec3f& p : positions) {
+    box.low = {std::min(box.low.x, double{p.x}), std::min(box.low.y, double{p.y}), std::min(box.low.z, double{p.z})};
+    box.high = {std::max(box.high.x, double{p.x}), std::max(box.high.y, double{p.y}),
+                std::max(box.high.z, double{p.z})};
+  }
+  return box;
+}
+
+std::vector<CornerValues::NormalUv> normal_uv(const asset::Asset& asset, const SlotTextures& textures) {
+  std::vector<CornerValues::NormalUv> out(textures.size());
+  for (std::size_t p = 0; p < out.size(); ++p) {
+    if (textures[p]) out[p] = {asset.primitives[p].find(textures[p]->uv), textures[p]->transform};
+  }
+  return out;
+}
+
+} // namespace
+
+GeometryMaps::GeometryMaps(const BakeJob& job, PageBaking& page) : job_(job), page_(page) {
+  if (job.wants(Map::normal) || job.options().maps.names(Map::object_normal)) {
+    normal_ = textures_of(job.asset, job.delivery, TextureSlot::normal, job.report);
+  }
+}
+
+void GeometryMaps::bake_normals() {
+  const bool objects = job_.options().maps.names(Map::object_normal);
+  if (!job_.wants(Map::normal) && !objects) return;
+  SlotTextures textures = page_.shown(normal_);
+  const DecodedImages images = decode(job_.asset, job_.limits, false, textures, job_.report);
+  const std::vector<bool> wanted = takes_normal_map(textures);
+  if (!any(wanted) && !objects) return;
+
+  const CornerValues& values = page_.values();
+  const std::vector<std::array<Vec3f, 3>> normals = values.normals();
+  const std::vector<texture::CornerUv> uv = page_.source_uv(textures);
+  const std::vector<texture::TextureSource> sources = sources_of(textures, images);
+  const texture::TextureReader reader(page_.map(), values.shown(), uv, page_.primitive_of(), sources, Encoding::linear);
+  std::vector<std::array<texture::Tangent, 3>> old_frames;
+  if (any(textures)) old_frames = values.tangents(normal_uv(job_.asset, textures));
+  std::vector<float> scales(textures.size());
+  for (std::size_t p = 0; p < scales.size(); ++p) scales[p] = textures[p] ? textures[p]->scale : 0;
+  const texture::NormalSource source{normals, old_frames, any(textures) ? &reader : nullptr, scales,
+                                     page_.primitive_of()};
+
+  if (objects) add_normals("object_normal", source, nullptr, false);
+  if (!any(wanted)) return;
+  const TangentFrames frames =
+      add_tangent_frames(job_.shown.asset, job_.shown.surface, job_.shown.cut, wanted, job_.delivery, job_.report);
+  const texture::FrameField field{&page_.delivered_map(), job_.shown.cut.triangles, frames.normals, frames.tangents};
+  const std::uint32_t number = add_normals("normal", source, &field, true);
+  for (std::size_t p = 0; p < wanted.size(); ++p) {
+    if (wanted[p]) job_.delivery.primitives[p].textures[TextureSlot::normal] = number;
+  }
+  if (!job_.levels.empty()) bake_normals_of_levels(source, wanted);
+}
+
+// One map for all levels, in the frames of the coarsest. Of a primitive that has nothing left there, each level has
+// frames of its own under the full surface's map.
+void GeometryMaps::bake_normals_of_levels(const texture::NormalSource& source, const std::vector<bool>& wanted) {
+  DetailLevel& coarsest = job_.levels.back();
+  std::vector<bool> shared = wanted, apart = wanted;
+  for (std::size_t p = 0; p < wanted.size(); ++p) {
+    shared[p] = wanted[p] && !coarsest.delivery.primitives[p].indices.empty();
+    apart[p] = wanted[p] && !shared[p];
+  }
+  Report already_noted; // of the full surface
+  for (DetailLevel& level : job_.levels) {
+    add_tangent_frames(job_.shown.asset, job_.shown.surface, level.level.mesh, apart, level.delivery, already_noted);
+  }
+  if (!any(shared)) return;
+  const SharedFrames frames(job_.shown.asset, job_.shown.surface, job_.shown.cut, page_.page(), shared, coarsest,
+                            page_.map(), page_.pool());
+  for (DetailLevel& level : job_.levels.first(job_.levels.size() - 1)) {
+    frames.give_to(job_.shown.asset, job_.shown.surface, level.level.mesh, level.delivery);
+  }
+  const texture::FrameField field = frames.field();
+  const std::uint32_t number = add_normals("normal_lods", source, &field, true);
+  for (DetailLevel& level : job_.levels) {
+    for (std::size_t p = 0; p < shared.size(); ++p) {
+      if (shared[p]) level.delivery.primitives[p].textures[TextureSlot::normal] = number;
+    }
+  }
+}
+
+// The primitives whose normal map is baked: with maps=auto those that have one, by name all. Not where other textures
+// depend on the TANGENT that would change.
+std::vector<bool> GeometryMaps::takes_normal_map(const SlotTextures& textures) const {
+  std::vector<bool> out(textures.size());
+  for (std::size_t p = 0; p < out.size(); ++p) {
+    const bool named = job_.options().maps.names(Map::normal);
+    if (!page_.shows(p) || !(named || (job_.options().maps.automatic && textures[p]))) continue;
+    out[p] = !asset::shares_tangents(job_.asset, job_.asset.primitives[p]);
+    if (out[p]) continue;
+    job_.report.notes.push_back({"normal-map-kept",
+                                 "the normal map was not baked: the clear coat, the anisotropy or a variant's material "
+                                 "needs the tangents that it would change",
+                                 pointer_to(job_.asset.primitives[p])});
+  }
+  return out;
+}
+
+std::uint32_t GeometryMaps::add_normals(const std::string& name, const texture::NormalSource& source,
+                                        const texture::FrameField* frames, bool shown) {
+  const auto bake = [&]<class Picture>() {
+    return texture::bake_normals<Picture>(page_.map(), source, frames, job_.progress, page_.pool());
+  };
+  return job_.options().normal_bits == 16
+             ? page_.add(bake.operator()<texture::Image16>(), MapKind::directions, name, shown)
+             : page_.add(bake.operator()<Image>(), MapKind::directions, name, shown);
+}
+
+void GeometryMaps::bake_ambient_occlusion() {
+  if (!job_.options().maps.names(Map::ambient_occlusion)) return;
+  constexpr double most_texels = 1U << 17U;
+  const texture::TexelMap& whole = page_.map();
+  const double texels =
+      static_cast<double>(whole.width()) * whole.height() * static_cast<double>(job_.cut.pages.size());
+  const auto step = static_cast<std::uint32_t>(std::max(std::ceil(std::sqrt(texels / most_texels)), 1.0));
+  const texture::TexelMap map(page_.mesh(), std::max(whole.width() / step, 1U), std::max(whole.height() / step, 1U),
+                              page_.pool());
+  if (!trees_) trees_ = occlusion_trees(job_.surface, job_.cut);
+  const Image image =
+      texture::bake_occlusion(map, page_.values().positions(), page_.values().normals(),
+                              {trees_->trees, trees_->tree_of}, trees_->offset, job_.progress, page_.pool());
+  const std::uint32_t number = page_.add(image, MapKind::data, "ambient_occlusion");
+  for (std::size_t p = 0; p < job_.asset.primitives.size(); ++p) {
+    if (!page_.shows(p) || asset::names_texture(job_.asset, job_.asset.primitives[p], TextureSlot::occlusion)) continue;
+    job_.delivery.primitives[p].textures[TextureSlot::occlusion] = number;
+  }
+}
+
+void GeometryMaps::bake_positions() {
+  if (!job_.options().maps.names(Map::position)) return;
+  const texture::Box box = box_of(job_.surface.mesh.positions);
+  page_.add(texture::bake_positions(page_.map(), page_.values().positions(), box, job_.progress, page_.pool()),
+            MapKind::data, "position", false);
+  page_.last_map().range = {box.low, box.high - box.low};
+}
+
+} // namespace orbis

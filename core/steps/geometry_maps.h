@@ -1,0 +1,38 @@
+// The maps that are made of the geometry: normals, ambient occlusion, positions.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/steps/occlusion_trees.h"
+#include "core/steps/page_baking.h"
+#include "core/texture/bake_maps.h"
+
+namespace orbis {
+
+// Bakes into the page that is open, and lets the delivered primitives show the result.
+class GeometryMaps {
+public:
+  // Keeps references to both.
+  GeometryMaps(const BakeJob& job, PageBaking& page);
+
+  // In tangent space, for the full surface and, where there are any, for its levels of detail; in the space of POSITION
+  // where that is asked for.
+  void bake_normals();
+  // In as many texels as the bound on the rays allows.
+  void bake_ambient_occlusion();
+  void bake_positions();
+
+private:
+  [[nodiscard]] std::vector<bool> takes_normal_map(const SlotTextures& textures) const;
+  void bake_normals_of_levels(const texture::NormalSource& source, const std::vector<bool>& wanted);
+  std::uint32_t add_normals(const std::string& name, const texture::NormalSource& source,
+                            const texture::FrameField* frames, bool shown);
+
+  const BakeJob& job_;
+  PageBaking& page_;
+  SlotTextures normal_;
+  std::optional<OcclusionTrees> trees_;
+};
+
+} // namespace orbis

@@ -1,0 +1,82 @@
+#include "core/steps/page_baking.h"
+
+#include <algorithm>
+
+namespace orbis {
+namespace {
+
+std::vector<Vec2f> uv_of(const texture::CutMesh& cut) {
+  std::vector<Vec2f> out;
+  out.reserve(cut.vertices.size());
+  for (const texture::CutVertex& v : cut.vertices) out.push_back(v.uv);
+  return out;
+}
+
+std::vector<std::uint32_t> triangles_on(const texture::CutMesh& cut, std::uint32_t page) {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t t = 0; t < cut.triangles.size(); ++t) {
+    if (cut.page_of(t) == page) out.push_back(t);
+  }
+  return out;
+}
+
+} // namespace
+
+bool any(const SlotTextures& textures) {
+  return std::ranges::any_of(textures, [](const auto& t) { return t.has_value(); });
+}
+bool any(const std::vector<bool>& flags) { return std::ranges::find(flags, true) != flags.end(); }
+
+PageBaking::PageBaking(const BakeJob& job)
+    : job_(job), pool_(job.options().threads), values_(job.asset, job.surface, job.cut, pool_), uv_(uv_of(job.cut)) {
+  primitive_of_.reserve(job.cut.triangles.size());
+  for (std::size_t t = 0; t < job.cut.triangles.size(); ++t) primitive_of_.push_back(values_.primitive(t));
+}
+
+void PageBaking::open(std::uint32_t page) {
+  page_ = page;
+  values_.show(triangles_on(job_.cut, page));
+  map_.emplace(mesh(), job_.cut.pages[page].width, job_.cut.pages[page].height, pool_);
+  delivered_.reset();
+  if (&job_.shown.cut != &job_.cut) delivered_.emplace(job_.shown.cut, page, pool_);
+}
+
+PageBaking::DeliveredPage::DeliveredPage(const texture::CutMesh& cut, std::uint32_t page, mesh::ThreadPool& pool)
+    : uv(uv_of(cut)), triangles(triangles_on(cut, page)),
+      map({uv, cut.triangles, triangles}, cut.pages[page].width, cut.pages[page].height, pool) {}
+
+bool PageBaking::shows(std::size_t primitive) const {
+  return !job_.delivery.primitives[primitive].indices.empty() && job_.delivery.page_of[primitive] == page_;
+}
+
+SlotTextures PageBaking::shown(const SlotTextures& textures) const {
+  SlotTextures out(textures.size());
+  for (std::size_t p = 0; p < out.size(); ++p) {
+    if (shows(p)) out[p] = textures[p];
+  }
+  return out;
+}
+
+std::vector<texture::CornerUv> PageBaking::source_uv(const SlotTextures& textures) const {
+  std::vector<const asset::Attribute*> uv_of(textures.size());
+  for (std::size_t p = 0; p < textures.size(); ++p) {
+    if (textures[p]) uv_of[p] = job_.asset.primitives[p].find(textures[p]->uv);
+  }
+  return values_.uv(uv_of);
+}
+
+std::string PageBaking::named(const std::string& map) const {
+  return job_.cut.pages.size() > 1 ? map + '-' + std::to_string(page_ + 1) : map;
+}
+
+std::uint32_t PageBaking::add(asset::NewImage image, std::uint32_t width, std::uint32_t height, std::size_t bits,
+                              bool shown) {
+  const std::string file = image.name + "." + ending_of(image);
+  job_.report.maps.push_back({file, page_, width, height, static_cast<std::uint32_t>(bits), image.bytes.size(), {}});
+  out_.files.push_back({file, image.bytes});
+  if (!shown) return 0;
+  out_.images.push_back(std::move(image));
+  return static_cast<std::uint32_t>(out_.images.size() - 1);
+}
+
+} // namespace orbis
