@@ -120,6 +120,7 @@ CoarseWarp::CoarseWarp(const PlaneMesh& mesh, std::uint32_t cells) {
     CoarseWarp finer = *this;
     finer.cells_ = n;
     finer.grid_ = {};
+    finer.grid_.exponent = mesh.exponent;
     for (std::uint32_t y = 0; y <= n; ++y)
       for (std::uint32_t x = 0; x <= n; ++x) {
         finer.grid_.points.push_back(linear({static_cast<double>(x) / n, static_cast<double>(y) / n}));

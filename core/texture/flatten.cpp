@@ -1,11 +1,13 @@
 #include "core/texture/flatten.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
 #include "core/error.h"
 #include "core/texture/coarse_warp.h"
+#include "core/texture/density.h"
 #include "core/texture/plane_energy.h"
 #include "core/texture/untangle.h"
 
@@ -15,6 +17,10 @@ namespace {
 constexpr int most_cycles = 6;
 constexpr double worthwhile = 0.01; // of the energy, to go on for
 constexpr int first_sweeps = 3, sweeps_a_cycle = 6, last_sweeps = 4;
+// Where this part of the surface gets less than this part of the median texels, areas are weighed more and more.
+constexpr double sparse_part = 0.01, sparse_density = 0.27;
+constexpr std::array<int, 3> heavier_exponents{8, 12, 16};
+constexpr int heavier_sweeps_a_cycle = 12;
 constexpr double weight_of_hole = 1e-3; // of a triangle that only closes one
 constexpr double least_area = 1e-6;     // of a triangle, in units of the mean
 constexpr std::uint32_t most_cells = 32;
@@ -79,7 +85,7 @@ void settle_in_rectangle(PlaneMesh& mesh, int sweeps) {
 // One step for the low frequencies and one for the high ones: `part` of the way to where the warp says. Returns the
 // part of the energy that was gained; 0 where that folds triangles beyond mending or does not pay: the mesh is then as
 // before.
-double cycle(PlaneMesh& mesh, double part) {
+double cycle(PlaneMesh& mesh, double part, int sweeps) {
   const std::vector<FlatPoint> before = mesh.points;
   const double energy = energy_of(mesh);
   to_unit_square(mesh);
@@ -89,11 +95,21 @@ double cycle(PlaneMesh& mesh, double part) {
     mesh.points[v] = {from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)};
   }
   if (untangle(mesh)) {
-    settle_in_rectangle(mesh, sweeps_a_cycle);
+    settle_in_rectangle(mesh, sweeps);
     if (const double now = energy_of(mesh); now < energy) return (energy - now) / energy;
   }
   mesh.points = before;
   return 0;
+}
+
+void lower(PlaneMesh& mesh, int sweeps) {
+  double part = 1;
+  for (int i = 0; i < most_cycles && cells_for(mesh.triangles.size()) > 1; ++i) {
+    const double gain = cycle(mesh, part, sweeps);
+    if (gain > 0 && gain < worthwhile && part == 1) break;
+    part = gain > 0 ? std::min(1.0, 2 * part) : part / 3;
+  }
+  settle_in_rectangle(mesh, last_sweeps);
 }
 
 // From the square of the central projection to the rectangle of the surface's own size. Returns false where a triangle
@@ -105,14 +121,37 @@ bool flatten_chart(PlaneMesh& mesh) {
   // Points within the tolerance of a border were moved onto it.
   if (!untangle(mesh)) return false;
   settle_in_rectangle(mesh, first_sweeps);
-  double part = 1;
-  for (int i = 0; i < most_cycles && cells_for(mesh.triangles.size()) > 1; ++i) {
-    const double gain = cycle(mesh, part);
-    if (gain > 0 && gain < worthwhile && part == 1) break;
-    part = gain > 0 ? std::min(1.0, 2 * part) : part / 3;
-  }
-  settle_in_rectangle(mesh, last_sweeps);
+  lower(mesh, sweeps_a_cycle);
   return true;
+}
+
+// The charts that hold what gets too few texels; none where that is no more than sparse_part of the surface.
+std::vector<std::size_t> sparse_charts(std::span<const ChartMesh> charts) {
+  const auto density_of = [](const PlaneMesh& mesh, std::size_t t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    const double area = mesh.references[t].area;
+    return Density{doubled_area(mesh.points[a], mesh.points[b], mesh.points[c]) / (2 * area), area};
+  };
+  std::vector<Density> densities;
+  double total = 0;
+  for (const ChartMesh& chart : charts)
+    for (std::size_t t = 0; t < chart.mesh.triangles.size(); ++t) {
+      densities.push_back(density_of(chart.mesh, t));
+      total += densities.back().area;
+    }
+  sort_by_density(densities);
+  const double least = sparse_density * percentile(densities, total, 0.5);
+  if (percentile(densities, total, sparse_part) >= least) return {};
+  std::vector<std::size_t> out;
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    double sparse = 0;
+    for (std::size_t t = 0; t < charts[c].mesh.triangles.size(); ++t) {
+      const Density d = density_of(charts[c].mesh, t);
+      if (d.texels_per_area < least) sparse += d.area;
+    }
+    if (sparse > sparse_part * total / static_cast<double>(charts.size())) out.push_back(c);
+  }
+  return out;
 }
 
 } // namespace
@@ -124,6 +163,14 @@ void flatten(FlatCharts& charts, std::span<const Vec3d> positions, std::size_t d
                   [&](std::size_t c, std::size_t) { is_flat[c] = flatten_chart(meshes[c].mesh) ? 1 : 0; });
   if (std::ranges::find(is_flat, 0) != is_flat.end())
     throw Error(ErrorCode::not_certified, "a triangle at a border of the cube's faces has no room in its chart");
+  for (const int exponent : heavier_exponents) {
+    const std::vector<std::size_t> sparse = sparse_charts(meshes);
+    pool.for_blocks(sparse.size(), 1, [&](std::size_t i, std::size_t) {
+      PlaneMesh& mesh = meshes[sparse[i]].mesh;
+      mesh.exponent = exponent;
+      lower(mesh, heavier_sweeps_a_cycle);
+    });
+  }
   charts.sizes.clear();
   for (const ChartMesh& chart : meshes) {
     const FlatCharts::Size size = size_of(chart.mesh);

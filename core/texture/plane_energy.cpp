@@ -14,15 +14,28 @@ constexpr int most_halvings = 6;
 constexpr double worthwhile = 0.01;          // of a star's energy
 constexpr double smallest_eigenvalue = 1e-3; // in units of the largest one
 
-// E = D h(x): h = (x^3 + 4 x + 6/x + 4/x^3 + 1/x^5) / 32 and its derivatives.
+double power(double c, int n) {
+  const double c4 = (c * c) * (c * c);
+  double out = c4;
+  for (int k = 4; k < n; k += 4) out *= c4;
+  return out;
+}
+
+// E = D h(x): h = c^n / (2 x) with c = (x + 1/x) / 2, and its derivatives, by those of ln h.
 struct AreaFactor {
   double h, h1, h2;
 
-  explicit AreaFactor(double x) {
-    const double i = 1 / x, i2 = i * i, x2 = x * x;
-    h = (x * (x2 + 4) + i * (6 + i2 * (4 + i2))) / 32;
-    h1 = (3 * x2 + 4 - i2 * (6 + i2 * (12 + 5 * i2))) / 32;
-    h2 = (6 * x + i * i2 * (12 + i2 * (48 + 30 * i2))) / 32;
+  AreaFactor(double x, int exponent) {
+    const double i = 1 / x, c = 0.5 * (x + i), k = 1 / c, c1 = 0.5 * (1 - i * i) * k, c2 = i * i * i * k;
+    h = 0.5 * i * power(c, exponent);
+    const double g1 = exponent * c1 - i, g2 = exponent * (c2 - c1 * c1) + i * i;
+    h1 = h * g1;
+    h2 = h * (g1 * g1 + g2);
+  }
+  // h alone.
+  static double at(double x, int exponent) {
+    const double i = 1 / x;
+    return 0.5 * i * power(0.5 * (x + i), exponent);
   }
 };
 
@@ -41,14 +54,14 @@ struct Expansion {
 };
 
 // With the other corners fixed V is linear in p and D quadratic.
-Expansion expand(std::span<const Term> star, const FlatPoint& p) {
+Expansion expand(std::span<const Term> star, const FlatPoint& p, int exponent) {
   Expansion out;
   for (const Term& t : star) {
     const double ux = t.a.x - p.x, uy = t.a.y - p.y, vx = t.b.x - p.x, vy = t.b.y - p.y;
     const double D = 0.5 * (t.cot_b * squared(ux, uy) + t.cot_a * squared(vx, vy)) + t.fixed;
     const double Dx = -(t.cot_b * ux + t.cot_a * vx), Dy = -(t.cot_b * uy + t.cot_a * vy);
     const double Dxx = t.cot_a + t.cot_b;
-    const AreaFactor f(t.scale * (uy * vx - ux * vy));
+    const AreaFactor f(t.scale * (uy * vx - ux * vy), exponent);
     const double Vx = t.scale * (vy - uy), Vy = t.scale * (ux - vx);
     out.energy += D * f.h;
     out.gx += f.h * Dx + D * f.h1 * Vx;
@@ -61,13 +74,13 @@ Expansion expand(std::span<const Term> star, const FlatPoint& p) {
 }
 
 // Infinite where a triangle is folded.
-double energy_at(std::span<const Term> star, const FlatPoint& p) {
+double energy_at(std::span<const Term> star, const FlatPoint& p, int exponent) {
   double sum = 0;
   for (const Term& t : star) {
     const double ux = t.a.x - p.x, uy = t.a.y - p.y, vx = t.b.x - p.x, vy = t.b.y - p.y;
     const double x = t.scale * (uy * vx - ux * vy);
     if (!(x > 0)) return std::numeric_limits<double>::infinity();
-    sum += (0.5 * (t.cot_b * squared(ux, uy) + t.cot_a * squared(vx, vy)) + t.fixed) * AreaFactor(x).h;
+    sum += (0.5 * (t.cot_b * squared(ux, uy) + t.cot_a * squared(vx, vy)) + t.fixed) * AreaFactor::at(x, exponent);
   }
   return sum;
 }
@@ -150,14 +163,14 @@ private:
   double move(mesh::Index v) {
     gather(v);
     FlatPoint& p = mesh_.points[v];
-    const Expansion e = expand(star_, p);
+    const Expansion e = expand(star_, p, mesh_.exponent);
     const bool on_side = mesh_.fixed_x[v] || mesh_.fixed_y[v];
     const FlatPoint s = on_side ? along_side(e, mesh_.fixed_x[v], mesh_.fixed_y[v]) : descent(e);
     double t = step_to_fold(star_, p, s);
     if (!(t > 0)) return 0;
     for (int i = 0; i < most_halvings; ++i, t *= 0.5) {
       const FlatPoint q{p.x + t * s.x, p.y + t * s.y};
-      const double energy = energy_at(star_, q);
+      const double energy = energy_at(star_, q, mesh_.exponent);
       if (!(energy < e.energy)) continue;
       p = q;
       return (e.energy - energy) / e.energy;
@@ -170,7 +183,12 @@ private:
 // is a sum of moments of Dx and of Dy with the powers of x0 that h has.
 class ScaledEnergy {
 public:
-  explicit ScaledEnergy(const PlaneMesh& mesh) {
+  explicit ScaledEnergy(const PlaneMesh& mesh) : n_(mesh.exponent) {
+    // h = (x + 1/x)^n / (2^(n+1) x), by the binomial theorem.
+    factors_.push_back(std::ldexp(1.0, -n_ - 1));
+    for (int k = 1; k <= n_; ++k) factors_.push_back(factors_.back() * (n_ + 1 - k) / k);
+    moments_x_.resize(factors_.size());
+    moments_y_.resize(factors_.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const PlaneReference& r = mesh.references[t];
       std::array<FlatPoint, 3> p;
@@ -182,26 +200,25 @@ public:
         along_y += 0.5 * r.cot[k] * (a.y - b.y) * (a.y - b.y);
       }
       const double x = doubled_area(p[0], p[1], p[2]) / (2 * r.area), x2 = x * x;
-      double power = x * x2;
-      for (std::size_t i = 0; i < powers; ++i, power /= x2) {
-        moments_x_[i] += along_x * power;
-        moments_y_[i] += along_y * power;
+      double x_power = std::pow(x, n_ - 1);
+      for (std::size_t i = 0; i < factors_.size(); ++i, x_power /= x2) {
+        moments_x_[i] += along_x * x_power;
+        moments_y_[i] += along_y * x_power;
       }
     }
   }
 
   [[nodiscard]] double operator()(double sx, double sy) const {
     const double s = sx * sy;
-    double power = s * s * s, sum = 0;
-    for (std::size_t i = 0; i < powers; ++i, power /= s * s)
-      sum += factors[i] * power * (sx * sx * moments_x_[i] + sy * sy * moments_y_[i]);
+    double s_power = std::pow(s, n_ - 1), sum = 0;
+    for (std::size_t i = 0; i < factors_.size(); ++i, s_power /= s * s)
+      sum += factors_[i] * s_power * (sx * sx * moments_x_[i] + sy * sy * moments_y_[i]);
     return sum;
   }
 
 private:
-  static constexpr std::size_t powers = 5; // 3, 1, -1, -3, -5
-  static constexpr std::array<double, powers> factors{1.0 / 32, 4.0 / 32, 6.0 / 32, 4.0 / 32, 1.0 / 32};
-  std::array<double, powers> moments_x_{}, moments_y_{};
+  int n_;
+  std::vector<double> factors_, moments_x_, moments_y_; // by power of x: n - 1, n - 3, ...
 };
 
 } // namespace

@@ -5,12 +5,11 @@
 //   D = 1/2 sum cot(opposite angle) |edge|^2    Dirichlet energy of the linear map (Pinkall and Polthier 1993)
 //   V                                           twice the image's area, signed; 0 exactly at a fold
 //   x = V / (2 A)                               area ratio
-//   E = A (D / V) ((x + 1/x) / 2)^4             = A where isometric
+//   E = A (D / V) ((x + 1/x) / 2)^n             = A where isometric
 //
-// D / V measures angles alone (Hormann and Greiner, MIPS, 2000); the second factor measures areas. With the exponent 1
-// in the place of 4 this is the symmetric Dirichlet energy (Smith and Schaefer 2015); the higher one weighs areas more,
-// since an atlas is for even texels (docs/atlas.md has the figures). E grows without bound at a fold: descent keeps
-// orientation.
+// D / V measures angles alone (Hormann and Greiner, MIPS, 2000); the second factor measures areas. With the exponent
+// n = 1 this is the symmetric Dirichlet energy (Smith and Schaefer 2015); higher ones weigh areas more, since an atlas
+// is for even texels (docs/atlas.md has the figures). E grows without bound at a fold: descent keeps orientation.
 #pragma once
 
 #include <array>
@@ -37,6 +36,7 @@ struct PlaneMesh {
   std::vector<bool> fixed_x, fixed_y; // one per point
   std::vector<mesh::Triangle> triangles;
   std::vector<PlaneReference> references; // one per triangle, areas above 0
+  int exponent = 4;                       // n, a multiple of 4
 };
 
 // Twice the area of a triangle as it is seen from outside the surface, with y down; positive where it is not folded.

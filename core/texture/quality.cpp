@@ -5,23 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "core/texture/density.h"
 #include "core/texture/page_raster.h"
 
 namespace orbis::texture {
 namespace {
-
-struct Density {
-  double texels_per_area, area;
-};
-
-double percentile(std::span<const Density> sorted, double total, double fraction) {
-  double below = 0;
-  for (const Density& d : sorted) {
-    below += d.area;
-    if (below >= fraction * total) return d.texels_per_area;
-  }
-  return sorted.empty() ? 0 : sorted.back().texels_per_area;
-}
 
 std::vector<Vec3d> positions_of(const CutMesh& mesh, const mesh::TriangleMesh& surface) {
   std::vector<Vec3d> out;
@@ -89,8 +77,7 @@ AtlasQuality measure_atlas(const CutMesh& mesh, const mesh::TriangleMesh& surfac
   }
   AtlasQuality out;
   if (densities.empty()) return out;
-  std::sort(densities.begin(), densities.end(),
-            [](const Density& a, const Density& b) { return a.texels_per_area < b.texels_per_area; });
+  sort_by_density(densities);
   out.texels_per_area = texels / area;
   out.density_min = densities.front().texels_per_area / out.texels_per_area;
   out.density_p1 = percentile(densities, area, 0.01) / out.texels_per_area;
