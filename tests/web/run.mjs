@@ -42,7 +42,8 @@ const sharedModels = ['anim', 'closed0', 'ext', 'genus', 'multi', 'nonmanifold',
 // Runs orbis on a model with the files beside it; nothing where it was refused.
 function textured(model) {
   const result = path.join(scratch, `${path.basename(model)}.orbis.glb`), report = path.join(scratch, 'report.json')
-  const files = externalUris(model).flatMap((uri) => ['--attach', path.join(path.dirname(model), decodeURIComponent(uri))])
+  const files = externalUris(model).map((uri) => path.join(path.dirname(model), decodeURIComponent(uri)))
+    .filter((file) => fs.existsSync(file)).flatMap((file) => ['--attach', file])
   const run = spawnSync(orbis, ['run', model, '-o', result, '--report', report, '--texture-size', '2048',
     ...files], {encoding: 'utf8'})
   if (run.status === 0) return {result, report: JSON.parse(fs.readFileSync(report, 'utf8'))}
