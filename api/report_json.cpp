@@ -149,6 +149,7 @@ Json level_json(const Report::Level& level) {
           {"texture_deviation", level.texture_deviation},
           {"texture_deviation_max", level.texture_deviation_max},
           {"outside", level.outside},
+          {"psnr", level.psnr},
           {"screen_coverage", level.screen_coverage},
           {"folded", level.folded},
           {"degree", level.degree},

@@ -90,7 +90,12 @@ constexpr FileTraits file_traits[]{
     {"preview.png", "image/png", "-preview.png", JobFile::preview},
 };
 
-const FileTraits& traits_of(JobFile kind) { return *std::ranges::find(file_traits, kind, &FileTraits::kind); }
+constexpr FileTraits zipped_result{"result", "application/zip", ".zip", JobFile::result};
+
+const FileTraits& traits_of(const Job& job, JobFile kind) {
+  if (kind == JobFile::result && job.options.output == OutputForm::zip) return zipped_result;
+  return *std::ranges::find(file_traits, kind, &FileTraits::kind);
+}
 
 // The media type of a map, by its name's ending.
 std::string_view type_of_map(std::string_view name) {
@@ -372,7 +377,7 @@ Response Router::result_of(const Request& request, const Job& job, JobFile kind)
   if (auto refusal = refuse_unfinished(job)) return *std::move(refusal);
   const auto file = jobs_.file(job.id, kind);
   if (!file) throw Refused(Refusal::expired, "the job expired just now; post the model again");
-  const FileTraits& traits = traits_of(kind);
+  const FileTraits& traits = traits_of(job, kind);
   Response response = file_response(request, *file, traits.type);
   if (kind == JobFile::result && response.status < 400) {
     response.set("Content-Disposition",

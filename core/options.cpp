@@ -10,7 +10,7 @@
 namespace orbis {
 namespace {
 
-constexpr std::array<OptionInfo, 18> table{{
+constexpr std::array<OptionInfo, 19> table{{
     {"topology", "repair | strict", "repair",
      "repair: whatever has triangles is parametrized; strict: anything but one closed component of genus 0 is refused"},
     {"weld_tolerance", "a number, 0 or more", "0",
@@ -39,6 +39,7 @@ constexpr std::array<OptionInfo, 18> table{{
      "what comes from the geometry"},
     {"normal_bits", "8 | 16", "8", "bits a channel of the normal maps"},
     {"compression", "none | draco", "none", "how the geometry is stored in the result"},
+    {"output", "glb | zip", "glb", "one GLB; or a zip of it, of each level of detail by itself, and of a manifest"},
     {"lods", "a list such as 0.25,0.05,0.01: parts of the triangles, their numbers, or deviation:0.1", "",
      "levels of detail on the same atlas, from fine to coarse; deviation: in per cent of the model's diagonal"},
     {"remesh", "none | octahedral:N | icosahedral:N, N from 1 to 8", "none",
@@ -86,6 +87,7 @@ constexpr std::array<std::string_view, 2> pages{"per-material", "single"};
 constexpr std::array<std::string_view, 3> formats{"png", "jpeg", "webp"};
 constexpr std::array<std::string_view, 2> topologies{"repair", "strict"};
 constexpr std::array<std::string_view, 2> compressions{"none", "draco"};
+constexpr std::array<std::string_view, 2> outputs{"glb", "zip"};
 
 // "0.25", "5000" or "deviation:0.1".
 LodTarget lod_target(std::string_view name, std::string_view list, std::string_view text) {
@@ -238,6 +240,8 @@ void set_option(Options& options, std::string_view name, std::string_view value)
     options.normal_bits = value == "8" ? 8 : 16;
   } else if (name == "compression") {
     options.compression = choice<Compression>(name, value, compressions);
+  } else if (name == "output") {
+    options.output = choice<OutputForm>(name, value, outputs);
   } else if (name == "lods") {
     options.lods = lod_targets(name, value);
   } else if (name == "remesh") {
@@ -266,6 +270,7 @@ std::string get_option(const Options& options, std::string_view name) {
   if (name == "maps") return text_of(options.maps);
   if (name == "normal_bits") return std::to_string(options.normal_bits);
   if (name == "compression") return text_of(options.compression, compressions);
+  if (name == "output") return text_of(options.output, outputs);
   if (name == "lods") return text_of(options.lods);
   if (name == "remesh") return text_of(options.remesh);
   if (name == "sphere_morph") return text_of(options.sphere_morph, truths);

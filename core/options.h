@@ -19,6 +19,7 @@ enum class AtlasPages { per_material, single };
 enum class TextureFormat { png, jpeg, webp };
 enum class Compression { none, draco };
 enum class TopologyPolicy { repair, strict };
+enum class OutputForm { glb, zip };
 
 // When a level of detail is coarse enough.
 struct LodTarget {
@@ -84,6 +85,7 @@ struct Options {
   MapSelection maps;
   std::uint32_t normal_bits = 8; // 8 or 16 a channel, of the normal maps
   Compression compression = Compression::none;
+  OutputForm output = OutputForm::glb; // zip: each level as a file of its own too, with a manifest
   std::vector<LodTarget> lods; // levels of detail beside the full surface, from fine to coarse
   RemeshTarget remesh;         // of the largest component; smaller ones get triangles of about the same size
   bool sphere_morph = false;   // a morph target that takes each component to its sphere

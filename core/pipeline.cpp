@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include "core/asset/asset.h"
+#include "core/steps/archive.h"
 #include "core/steps/bake_maps.h"
 #include "core/steps/delivery.h"
 #include "core/steps/dump.h"
@@ -63,7 +64,7 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   dump_charts(dump, "3-charts.obj", sphere.cut);
 
   clock.report(Stage::levels, 0, 1);
-  std::vector<DetailLevel> levels = make_levels(asset, surface, sphere.cut, clock, report);
+  std::vector<DetailLevel> levels = make_levels(asset, surface, sphere.cut, delivery, clock, report);
 
   clock.report(Stage::bake, 0, 1);
   const SurfaceInAtlas shown{asset, surface, sphere.cut};
@@ -88,6 +89,8 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   clock.report(Stage::certify, 0, 1);
   certify_file(result.glb, asset, surface, sphere, delivery, report);
   certify_levels(result.glb, asset, surface, levels, report);
+  if (request.options.output == OutputForm::zip)
+    result.glb = archive_of(std::move(result.glb), asset, surface, levels, maps.images, report);
   clock.report(Stage::certify, 1, 1);
 
   report.stages = clock.times();

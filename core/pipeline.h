@@ -31,7 +31,7 @@ struct MapFile {
 };
 
 struct Result {
-  std::vector<std::byte> glb;
+  std::vector<std::byte> glb;                    // with output=zip the archive that holds it
   std::vector<std::byte> atlas_png, preview_png; // pictures to look at: the first page of the atlas; sphere and model
   std::vector<MapFile> maps;                     // as report.maps lists them
   Report report;

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <string>
 
 #include "core/lod/uv_orientation.h"
@@ -36,11 +37,12 @@ int atlas_orientation(const texture::CutMesh& cut) {
 
 class LevelReader {
 public:
-  LevelReader(std::span<const std::byte> glb, const asset::Asset& asset) : asset_(asset) {
+  // first: the number of the file's primitive where the levels begin.
+  LevelReader(std::span<const std::byte> glb, const asset::Asset& asset, std::size_t first)
+      : asset_(asset), next_(first) {
     Limits generous; // our own file: it is as large as it is
     generous.max_bytes = generous.max_triangles = generous.max_vertices = generous.max_image_pixels = UINT64_MAX / 64;
     file_ = asset::read_asset(glb, {}, generous);
-    next_ = asset.primitives.size();
   }
 
   // The levels' primitives stand behind the document's, in the order in which they were written.
@@ -80,31 +82,47 @@ private:
 
   const asset::Asset& asset_;
   asset::Asset file_;
-  std::size_t next_ = 0;
+  std::size_t next_;
 };
+
+struct LevelProof {
+  std::uint64_t folded = 0;
+  double degree = 1; // of the worst component
+};
+
+LevelProof prove(const std::vector<Piece>& pieces, const Surface& surface, std::size_t number) {
+  LevelProof out;
+  for (std::size_t c = 0; c < pieces.size(); ++c) {
+    const Piece& piece = pieces[c];
+    if (piece.on_sphere.triangles.empty()) continue; // a component that the level had to leave out
+    const mesh::Welded joined = mesh::weld(piece.on_sphere.positions, piece.on_sphere.triangles);
+    const sphere::Certificate proof = sphere::certify(joined.mesh.positions, joined.mesh.triangles);
+    out.folded += proof.folded + joined.degenerate.size() + piece.folded_in_atlas;
+    if (out.folded > 0) refuse(number, std::to_string(out.folded) + " triangles are folded");
+    if (surface.components[c].has_caps()) continue; // open: it covers its part of the sphere
+    if (!proof.valid) refuse(number, proof.failure());
+    if (std::abs(proof.degree - 1) > std::abs(out.degree - 1)) out.degree = proof.degree;
+  }
+  return out;
+}
 
 } // namespace
 
 void certify_levels(std::span<const std::byte> glb, const asset::Asset& asset, const Surface& surface,
                     std::span<const DetailLevel> levels, Report& report) {
   if (levels.empty()) return;
-  LevelReader reader(glb, asset);
+  LevelReader reader(glb, asset, asset.primitives.size());
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    Report::Level& facts = report.levels[i];
-    facts.degree = 1;
-    const std::vector<Piece> pieces = reader.next(i, levels[i], surface.components.size());
-    for (std::size_t c = 0; c < pieces.size(); ++c) {
-      const Piece& piece = pieces[c];
-      if (piece.on_sphere.triangles.empty()) continue; // a component that the level had to leave out
-      const mesh::Welded joined = mesh::weld(piece.on_sphere.positions, piece.on_sphere.triangles);
-      const sphere::Certificate proof = sphere::certify(joined.mesh.positions, joined.mesh.triangles);
-      facts.folded += proof.folded + joined.degenerate.size() + piece.folded_in_atlas;
-      if (facts.folded > 0) refuse(i, std::to_string(facts.folded) + " triangles are folded");
-      if (surface.components[c].has_caps()) continue; // open: it covers its part of the sphere
-      if (!proof.valid) refuse(i, proof.failure());
-      if (std::abs(proof.degree - 1) > std::abs(facts.degree - 1)) facts.degree = proof.degree;
-    }
+    const LevelProof proof = prove(reader.next(i, levels[i], surface.components.size()), surface, i);
+    report.levels[i].folded = proof.folded;
+    report.levels[i].degree = proof.degree;
   }
+}
+
+void certify_level_file(std::span<const std::byte> glb, const asset::Asset& asset, const Surface& surface,
+                        const DetailLevel& level, std::size_t number) {
+  LevelReader reader(glb, asset, 0);
+  static_cast<void>(prove(reader.next(number, level, surface.components.size()), surface, number));
 }
 
 } // namespace orbis

@@ -21,10 +21,11 @@ struct DetailLevel {
 };
 
 // The levels that options.lods asks for; none where it is empty. Ratios count the triangles of the surface before it
-// was cut for the atlas. Fills report.levels but for what is proved on
-// the file, and notes what a target cost. Reports Stage::levels.
+// was cut for the atlas. full: the full surface as it is delivered, for its normals. Fills report.levels but for what
+// is proved on the file, and notes what a target cost. Reports Stage::levels.
 [[nodiscard]] std::vector<DetailLevel> make_levels(const asset::Asset& asset, const Surface& surface,
-                                                   const texture::CutMesh& cut, Progress& progress, Report& report);
+                                                   const texture::CutMesh& cut, const Delivery& full,
+                                                   Progress& progress, Report& report);
 
 // As write_asset takes them.
 [[nodiscard]] std::vector<asset::NewLevel> in_asset(std::span<const DetailLevel> levels, const Report& report);
@@ -34,5 +35,9 @@ struct DetailLevel {
 // Throws Error{not_certified} where that fails.
 void certify_levels(std::span<const std::byte> glb, const asset::Asset& asset, const Surface& surface,
                     std::span<const DetailLevel> levels, Report& report);
+
+// The same for the file that holds level `number` alone. Throws Error{not_certified}.
+void certify_level_file(std::span<const std::byte> glb, const asset::Asset& asset, const Surface& surface,
+                        const DetailLevel& level, std::size_t number);
 
 } // namespace orbis

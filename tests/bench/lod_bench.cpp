@@ -1,80 +1,182 @@
-// Levels of detail alone: time, and how far each level is from the full surface.
+// Levels of detail alone: time, how far each level is from the full surface, and how it looks.
 //
-//   bench_lod [--levels 0.25,0.05,0.01] [--size 2048] MODEL…
+//   bench_lod [--levels 0.25,0.05,0.01] [--size 2048] [--meshopt] [--pictures DIR] MODEL…
 //
 // For each model and level: triangles; CPU milliseconds of the simplification of all levels; mean distance level to
-// full, full to level, Hausdorff distance, mean texture deviation, all in per cent of the bounding box's diagonal; part
-// of the surface that samples outside of the charts, in per cent.
+// full and full to level, Hausdorff distance, mean and largest texture deviation, all in per cent of the bounding box's
+// diagonal; part of the surface that samples outside of the charts, in per cent; PSNR of the normal-mapped render
+// against the full surface's, and of one with the level's own normals, in dB. --meshopt: the same distances for
+// meshoptimizer's simplification of the uncut mesh. --pictures: a row of pictures for each model: full, then for each
+// level with the normal map and without.
+#include <meshoptimizer.h>
+
+#include <algorithm>
 #include <cstdio>
 #include <ctime>
+#include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "bench/read_surface.h"
+#include "core/asset/image_codec.h"
 #include "core/lod/distance.h"
+#include "core/lod/render.h"
 #include "core/lod/simplify.h"
 #include "core/sphere/embedding.h"
 #include "core/sphere/snap.h"
+#include "core/texture/canvas.h"
 
 using namespace orbis;
 
 namespace {
 
+struct Arguments {
+  std::vector<double> ratios{0.25, 0.05, 0.01};
+  std::uint32_t size = 2048;
+  bool meshopt = false;
+  std::string pictures;
+};
+
+texture::CutMesh make_atlas(const mesh::TriangleMesh& surface, std::uint32_t size) {
+  NoProgress progress;
+  const sphere::Embedding embedding = sphere::embed_isometric(surface, Quality::standard, 0, progress);
+  const sphere::Snapped snapped = sphere::snap(embedding.points, surface.triangles);
+  return texture::make_atlas(
+      {surface.triangles, surface.triangles, snapped.points, surface.positions, surface.triangles.size()}, size,
+      progress);
+}
+
 double milliseconds_since(std::clock_t start) {
   return 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
-void measure(const std::string& path, const std::vector<double>& ratios, std::uint32_t size) {
-  const mesh::TriangleMesh surface = bench::read_surface(path);
-  NoProgress progress;
-  const sphere::Embedding embedding = sphere::embed_isometric(surface, Quality::standard, 0, progress);
-  const sphere::Snapped snapped = sphere::snap(embedding.points, surface.triangles);
-  const texture::CutMesh cut = texture::make_atlas(
-      {surface.triangles, surface.triangles, snapped.points, surface.positions, surface.triangles.size()}, size,
-      progress);
-  const std::vector<std::uint32_t> primitive_of(surface.triangles.size(), 0);
+// meshoptimizer's simplification as a level: its places in the atlas are not used.
+lod::Level meshopt_level(const mesh::TriangleMesh& surface, std::size_t triangles, double& milliseconds) {
+  lod::Level level;
+  std::vector<std::uint32_t> indices(3 * surface.triangles.size());
+  const auto* source = surface.triangles.front().data();
+  const std::clock_t start = std::clock();
+  float error = 0;
+  indices.resize(meshopt_simplify(indices.data(), source, 3 * surface.triangles.size(), &surface.positions[0].x,
+                                  surface.positions.size(), sizeof(Vec3f), 3 * triangles, 1.0F, 0, &error));
+  milliseconds = milliseconds_since(start);
+  level.positions = surface.positions;
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
+    level.mesh.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+  return level;
+}
 
+// The part of the pictures that any of them needs, with a margin.
+struct Frame {
+  std::uint32_t left = 0, right = 0, top = 0, bottom = 0; // right and bottom: one past the last
+
+  [[nodiscard]] std::uint32_t width() const { return right - left; }
+  [[nodiscard]] std::uint32_t height() const { return bottom - top; }
+};
+
+Frame frame_of(const std::vector<lod::Picture>& row) {
+  const std::uint32_t size = row[0].size, margin = size / 50;
+  Frame frame{size, 0, size, 0};
+  for (const lod::Picture& picture : row) {
+    for (std::uint32_t i = 0; i < size * size; ++i) {
+      if (picture.light[i] == lod::background) continue;
+      frame.left = std::min(frame.left, i % size);
+      frame.right = std::max(frame.right, i % size + 1);
+      frame.top = std::min(frame.top, i / size);
+      frame.bottom = std::max(frame.bottom, i / size + 1);
+    }
+  }
+  return {frame.left - std::min(margin, frame.left), std::min(frame.right + margin, size),
+          frame.top - std::min(margin, frame.top), std::min(frame.bottom + margin, size)};
+}
+
+void write_pictures(const std::string& path, const lod::Photographer& photographer,
+                    const std::vector<lod::Level>& levels, std::size_t view) {
+  std::vector<lod::Picture> row{photographer.of_full(view)};
+  for (const lod::Level& level : levels)
+    for (const lod::Shading shading : {lod::Shading::normal_map, lod::Shading::own_normals})
+      row.push_back(photographer.of(level, shading, view));
+  const Frame frame = frame_of(row);
+  texture::Image image{frame.width() * static_cast<std::uint32_t>(row.size()), frame.height(), 3, {}};
+  image.pixels.resize(std::size_t{image.width} * image.height * 3);
+  for (std::uint32_t y = 0; y < image.height; ++y) {
+    for (std::uint32_t x = 0; x < image.width; ++x) {
+      const lod::Picture& picture = row[x / frame.width()];
+      const std::size_t column = frame.left + x % frame.width();
+      const float light = picture.light[(frame.top + y) * std::size_t{picture.size} + column];
+      const float shown = light == lod::background ? 1.0F : light;
+      for (std::size_t c = 0; c < 3; ++c) image.at(x, y)[c] = static_cast<std::uint8_t>(255 * shown + 0.5F);
+    }
+  }
+  const std::vector<std::byte> bytes = asset::encode_jpeg(image, 85);
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+void measure(const std::string& path, const Arguments& arguments) {
+  const std::string name = path.substr(path.rfind('/') + 1);
+  const mesh::TriangleMesh surface = bench::read_surface(path);
+  const texture::CutMesh cut = make_atlas(surface, arguments.size);
+  const std::vector<std::uint32_t> primitive_of(surface.triangles.size(), 0);
   std::vector<lod::Target> targets;
-  for (const double r : ratios)
+  for (const double r : arguments.ratios)
     targets.push_back({static_cast<std::uint64_t>(r * static_cast<double>(surface.triangles.size())), 0});
+
+  NoProgress progress;
   std::clock_t start = std::clock();
   const lod::FullSurface full(surface, primitive_of, cut);
-  const std::vector<lod::Level> levels =
-      lod::simplify(full, targets, double(cut.gutter) / cut.pages[0].width, progress);
+  const double gutter = static_cast<double>(cut.gutter) / cut.pages[0].width;
+  const std::vector<lod::Level> levels = lod::simplify(full, targets, gutter, progress);
   const double simplification = milliseconds_since(start);
-  start = std::clock();
+
   mesh::ThreadPool threads(0);
+  start = std::clock();
   const lod::Ruler ruler(full, threads);
+  const std::vector<Vec3d> positions(full.positions().begin(), full.positions().end());
+  const std::vector<Vec3d> normals = texture::smooth_normals(cut, positions);
+  const lod::Photographer photographer(full, normals, 512, threads);
   for (const lod::Level& level : levels) {
     const lod::Distances d = ruler.distances(level);
     const lod::TextureDeviation t = ruler.texture_deviation(level);
-    const std::string name = path.substr(path.rfind('/') + 1);
-    std::printf("%-26s %7zu %7zu %6.0f  %.4f %.4f %.3f  %.4f %.3f  %.4f  %d %.4f %llu %d\n", name.c_str(),
+    std::printf("%-26s %7zu %6zu %6.0f ms  %.4f %.4f %.3f  %.4f %.3f  %.4f  %.1f %.1f\n", name.c_str(),
                 surface.triangles.size(), level.mesh.triangles.size(), simplification, 100 * d.to_full,
                 100 * d.from_full, 100 * d.hausdorff, 100 * t.mean, 100 * t.largest, 100 * t.outside,
-                int(level.concessions.turned_normals), level.concessions.outline,
-                static_cast<unsigned long long>(level.concessions.lost_components), int(level.concessions.is_short));
+                photographer.psnr(level, lod::Shading::normal_map),
+                photographer.psnr(level, lod::Shading::own_normals));
   }
   std::printf("measured in %.0f ms\n", milliseconds_since(start));
+  for (const lod::Target& target : targets) {
+    if (!arguments.meshopt) break;
+    double time = 0;
+    const lod::Level level = meshopt_level(surface, target.triangles, time);
+    const lod::Distances d = ruler.distances(level);
+    std::printf("%-26s %7zu %6zu %6.0f ms  %.4f %.4f %.3f  meshoptimizer\n", name.c_str(), surface.triangles.size(),
+                level.mesh.triangles.size(), time, 100 * d.to_full, 100 * d.from_full, 100 * d.hausdorff);
+  }
+  for (std::size_t view = 0; view < lod::Photographer::views && !arguments.pictures.empty(); ++view)
+    write_pictures(arguments.pictures + "/" + name + "-" + std::to_string(view) + ".jpg", photographer, levels, view);
 }
 
 } // namespace
 
 int main(int count, char** values) {
-  std::vector<double> ratios{0.25, 0.05, 0.01};
-  std::uint32_t size = 2048;
+  Arguments arguments;
   for (int i = 1; i < count; ++i) {
     const std::string word = values[i];
     if (word == "--levels" && i + 1 < count) {
-      ratios.clear();
+      arguments.ratios.clear();
       std::istringstream list(values[++i]);
-      for (std::string item; std::getline(list, item, ',');) ratios.push_back(std::stod(item));
+      for (std::string item; std::getline(list, item, ',');) arguments.ratios.push_back(std::stod(item));
     } else if (word == "--size" && i + 1 < count) {
-      size = static_cast<std::uint32_t>(std::stoul(values[++i]));
+      arguments.size = static_cast<std::uint32_t>(std::stoul(values[++i]));
+    } else if (word == "--meshopt") {
+      arguments.meshopt = true;
+    } else if (word == "--pictures" && i + 1 < count) {
+      arguments.pictures = values[++i];
     } else {
       try {
-        measure(word, ratios, size);
+        measure(word, arguments);
       } catch (const Error& e) {
         std::printf("%s: %s\n", word.c_str(), e.what());
       }

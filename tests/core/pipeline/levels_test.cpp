@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/asset/asset.h"
@@ -51,6 +52,26 @@ template <class Change> std::vector<std::byte> patched(const std::vector<std::by
   return out;
 }
 
+// The members of a zip archive that are stored as they are, by their local headers (APPNOTE 4.3.7).
+std::map<std::string, std::vector<std::byte>> stored_members(const std::vector<std::byte>& zip) {
+  std::map<std::string, std::vector<std::byte>> out;
+  const auto number = [&](std::size_t at, std::size_t bytes) {
+    std::size_t value = 0;
+    for (std::size_t i = bytes; i-- > 0;) value = value << 8 | std::to_integer<std::size_t>(zip.at(at + i));
+    return value;
+  };
+  for (std::size_t at = 0; number(at, 4) == 0x04034B50;) {
+    CHECK(number(at + 8, 2) == 0); // stored
+    const std::size_t size = number(at + 18, 4), name = number(at + 26, 2), extra = number(at + 28, 2);
+    const auto first = zip.begin() + static_cast<std::ptrdiff_t>(at + 30 + name + extra);
+    out[std::string(reinterpret_cast<const char*>(&zip[at + 30]), name)] = {first,
+                                                                            first + static_cast<std::ptrdiff_t>(size)};
+    at += 30 + name + extra + size;
+    if ((number(at, 4)) == 0x08074B50) at += 16; // a data descriptor
+  }
+  return out;
+}
+
 } // namespace
 
 TEST_CASE("levels of detail are alternatives of the node, share its material, and are what the report says") {
@@ -79,6 +100,7 @@ TEST_CASE("levels of detail are alternatives of the node, share its material, an
     CHECK(level.triangles <= most[i]);
     CHECK(level.reached);
     CHECK(level.folded == 0);
+    CHECK(level.psnr > 15);
     CHECK(level.outside == 0);
     CHECK(level.degree == doctest::Approx(1));
     CHECK(p.material == file.primitives[0].material);
@@ -189,6 +211,30 @@ TEST_CASE("a node that is only placed keeps its mesh, and each of its levels the
       CHECK_FALSE(node.contains("extensions"));
     }
   }
+}
+
+TEST_CASE("with output=zip every level is a file of its own, named in the manifest") {
+  NoProgress progress;
+  const std::vector<std::byte> glb = glb_of(shapes::bumpy_sphere(4));
+  Request request{glb, {}, {}};
+  request.options.texture_size = 256;
+  set_option(request.options, "lods", "0.2,0.05");
+  set_option(request.options, "output", "zip");
+  const Result result = process(request, {}, progress);
+  const std::map<std::string, std::vector<std::byte>> files = stored_members(result.glb);
+  REQUIRE(files.size() == 4);
+  CHECK(read(files.at("model.glb")).primitives.size() == 3);
+  const std::vector<std::byte>& text = files.at("manifest.json");
+  const Json manifest = Json::parse(std::string_view(reinterpret_cast<const char*>(text.data()), text.size()));
+  REQUIRE(manifest["levels"].size() == 2);
+  for (const Json& entry : manifest["levels"]) {
+    const asset::Asset level = read(files.at(entry["file"].get<std::string>()));
+    REQUIRE(level.primitives.size() == 1);
+    CHECK(level.primitives[0].indices.size() == 3 * entry["triangles"].get<std::size_t>());
+    CHECK(level.primitives[0].vertex_count() == entry["vertices"]);
+    CHECK(level.primitives[0].find("_SPHERE") != nullptr);
+  }
+  CHECK(process(request, {}, progress).glb == result.glb);
 }
 
 TEST_CASE("the option takes parts, numbers and bounds, from fine to coarse") {
