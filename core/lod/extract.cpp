@@ -1,5 +1,7 @@
 #include "core/lod/extract.h"
 
+#include <algorithm>
+
 namespace orbis::lod {
 
 Level extract(const FullSurface& full, const WedgeMesh& mesh) {
@@ -32,6 +34,13 @@ Level extract(const FullSurface& full, const WedgeMesh& mesh) {
     out.chart.push_back(full.cut().chart[t]);
   }
   return level;
+}
+
+std::vector<std::uint32_t> first_of_regions(const FullSurface& full, const Level& level) {
+  std::vector<std::uint32_t> first(1 + *std::max_element(full.regions().begin(), full.regions().end()), none);
+  for (std::uint32_t t = 0; t < level.regions.size(); ++t)
+    if (first[level.regions[t]] == none) first[level.regions[t]] = t;
+  return first;
 }
 
 } // namespace orbis::lod

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/lod/extract.h"
+
 namespace orbis::lod {
 namespace {
 
@@ -106,21 +108,16 @@ private:
   void sample() {
     const texture::CutMesh& cut = full_.cut();
     const ChartMap map(level_.mesh, level_.regions);
-    std::vector<std::uint32_t> near(1 + *std::max_element(full_.regions().begin(), full_.regions().end()), none);
-    for (std::uint32_t t = 0; t < level_.regions.size(); ++t)
-      if (near[level_.regions[t]] == none) near[level_.regions[t]] = t;
+    std::vector<std::uint32_t> near = first_of_regions(full_, level_);
     for (std::uint32_t t = 0; t < cut.triangles.size(); ++t) {
       std::uint32_t& from = near[full_.regions()[t]];
       if (from == none) continue; // the level has lost this component
-      const auto& [a, b, c] = cut.triangles[t];
-      const Vec3d e1 = full_.positions()[b] - full_.positions()[a], e2 = full_.positions()[c] - full_.positions()[a];
-      const Vec3d area = cross(e1, e2);
-      const double length = norm(area);
-      if (!(length > 0)) continue;
-      const Vec3d n = area * (1 / length);
-      constexpr double rest = 1 - slip;
-      const Symmetric3 m{slip + rest * n.x * n.x, rest * n.x * n.y, rest * n.x * n.z,
-                         slip + rest * n.y * n.y, rest * n.y * n.z, slip + rest * n.z * n.z};
+      const auto& [weight, own_slip] = full_.weighing(t);
+      if (!(weight > 0)) continue;
+      const Vec3d& n = full_.normal(t);
+      const double rest = 1 - own_slip;
+      const Symmetric3 m{own_slip + rest * n.x * n.x, rest * n.x * n.y, rest * n.x * n.z,
+                         own_slip + rest * n.y * n.y, rest * n.y * n.z, own_slip + rest * n.z * n.z};
       constexpr double third = 1.0 / 3;
       for (const auto& w : {std::array{third, third, third}, std::array{1.0, 0.0, 0.0}, std::array{0.0, 1.0, 0.0},
                             std::array{0.0, 0.0, 1.0}}) {
@@ -132,7 +129,7 @@ private:
         const std::optional<Place> place = map.locate(uv, from);
         if (!place) continue; // a border's rounding
         from = place->triangle;
-        add_sample(*place, m, full_.position({t, w}), 0.5 * length * (w[0] == third ? 0.75 : 1.0 / 12));
+        add_sample(*place, m, full_.position({t, w}), weight * (w[0] == third ? 0.75 : 1.0 / 12));
       }
     }
   }

@@ -10,7 +10,7 @@ namespace orbis::lod {
 // The quadrics of the collapses know the full surface by the planes that met at a vertex. Here the integral itself is
 // made small, over the full surface and with the level's triangulation and its places in the atlas as they are:
 //
-//   sum over samples i   a_i ( (1 - slip) (n_i . r_i)^2 + slip |r_i|^2 ),    r_i = sum_k w_ik p_k - P_i
+//   sum over samples i   a_i ( (1 - s_i) (n_i . r_i)^2 + s_i |r_i|^2 ),    r_i = sum_k w_ik p_k - P_i
 //
 // where the level's triangle at the sample's texel has its corners p_k and weights w_ik there. That is a linear system
 // for the positions, solved by conjugate gradients; its matrix is a mass matrix, so that few steps do. Points whose

@@ -3,10 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/lod/deviation_quadric.h"
 #include "core/mesh/edges.h"
+#include "core/texture/canvas.h"
 
 namespace orbis::lod {
 namespace {
+
+// Where normals turn by a radian within this length (a fraction of the diagonal: two pixels of a picture of 512), half
+// of the weight is reached that a crease has. docs/lods.md says what it is worth.
+constexpr double crease_length = 0.004;
+constexpr double crease_weight = 10; // more than that of a flat part
 
 double area_of(const Vec2f& a, const Vec2f& b, const Vec2f& c) {
   return 0.5 * ((double{b.x} - a.x) * (double{c.y} - a.y) - (double{c.x} - a.x) * (double{b.y} - a.y));
@@ -18,6 +25,7 @@ FullSurface::FullSurface(const mesh::TriangleMesh& surface, std::span<const std:
                          const texture::CutMesh& cut)
     : surface_(surface), cut_(cut) {
   scale_positions();
+  weigh();
   number_regions(primitive_of);
   chart_map_.emplace(cut_, regions_);
   find_joints();
@@ -51,6 +59,28 @@ void FullSurface::number_regions(std::span<const std::uint32_t> primitive_of) {
   regions_.reserve(cut_.triangles.size());
   for (std::size_t t = 0; t < cut_.triangles.size(); ++t)
     regions_.push_back(cut_.chart[t] * primitives + primitive_of[cut_.parent[t]]);
+}
+
+void FullSurface::weigh() {
+  const std::vector<Vec3d> smooth = texture::smooth_normals(cut_, positions_);
+  normals_.reserve(cut_.triangles.size());
+  weighings_.reserve(cut_.triangles.size());
+  for (const auto& [a, b, c] : cut_.triangles) {
+    const Vec3d e1 = positions_[b] - positions_[a], e2 = positions_[c] - positions_[a], area = cross(e1, e2);
+    const double length = norm(area);
+    normals_.push_back(length > 0 ? area * (1 / length) : Vec3d{});
+    if (!(length > 0)) {
+      weighings_.emplace_back();
+      continue;
+    }
+    // |grad n|^2 of the normals' linear interpolation over the triangle.
+    const Vec3d d1 = smooth[b] - smooth[a], d2 = smooth[c] - smooth[a];
+    const double turning =
+        (squared_norm(e2) * squared_norm(d1) - 2 * dot(e1, e2) * dot(d1, d2) + squared_norm(e1) * squared_norm(d2)) /
+        (length * length);
+    const double bend = crease_length * crease_length * turning, more = crease_weight * bend / (1 + bend);
+    weighings_.push_back({0.5 * length * (1 + more), (slip + more) / (1 + more)});
+  }
 }
 
 // Vertices of the welded surface on edges with one triangle, at whose place there is another such vertex.

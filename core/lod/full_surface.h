@@ -26,6 +26,15 @@ public:
   [[nodiscard]] std::span<const Vec3d> positions() const { return positions_; }
   // Cut triangle -> number of its region: the triangles of one primitive in one chart.
   [[nodiscard]] std::span<const std::uint32_t> regions() const { return regions_; }
+  // Cut triangle -> its unit normal; 0 where it has no area.
+  [[nodiscard]] const Vec3d& normal(std::size_t triangle) const { return normals_[triangle]; }
+  // Cut triangle -> weight and slip of its quadric (deviation_quadric.h): its area and the usual slip, and more of both
+  // where the shading changes quickly. There a texel that is off by r, in whatever direction, shows: the picture is
+  // wrong by r times the gradient of the normals.
+  struct Weighing {
+    double weight = 0, slip = 1;
+  };
+  [[nodiscard]] const Weighing& weighing(std::size_t triangle) const { return weighings_[triangle]; }
   // Length in space per length in the atlas, as the areas say: uv times this is in the units of positions().
   [[nodiscard]] double uv_scale() const { return uv_scale_; }
 
@@ -49,11 +58,13 @@ public:
 private:
   void scale_positions();
   void find_joints();
+  void weigh();
   void number_regions(std::span<const std::uint32_t> primitive_of);
 
   const mesh::TriangleMesh& surface_;
   const texture::CutMesh& cut_;
-  std::vector<Vec3d> positions_;
+  std::vector<Vec3d> positions_, normals_;
+  std::vector<Weighing> weighings_;
   std::vector<std::uint32_t> regions_;
   std::optional<ChartMap> chart_map_; // made after the regions
   std::vector<bool> joint_;           // vertex of the welded surface

@@ -7,7 +7,7 @@
 
 #include "core/lod/collapse.h"
 #include "core/lod/extract.h"
-#include "core/lod/fit_positions.h"
+#include "core/lod/refine.h"
 
 namespace orbis::lod {
 namespace {
@@ -48,7 +48,7 @@ public:
     }
     concessions_.is_short = target.triangles > 0 && mesh_.triangle_count > target.triangles && !stopped_by_bound_;
     Level level = extract(full_, mesh_);
-    fit_positions(full_, level);
+    refine(full_, level);
     level.concessions = concessions_;
     level.deviation = std::sqrt(largest_);
     return level;

@@ -12,10 +12,9 @@ constexpr double usual_stretch = 4;
 DeviationQuadric quadric_of(const FullSurface& full, std::uint32_t t) {
   const auto& [ia, ib, ic] = full.cut().triangles[t];
   const Vec3d a = full.positions()[ia], e1 = full.positions()[ib] - a, e2 = full.positions()[ic] - a;
-  const Vec3d area = cross(e1, e2);
-  const double length = norm(area);
-  if (!(length > 0)) return {};
-  const Vec3d n = area * (1 / length);
+  const auto& [weight, own_slip] = full.weighing(t);
+  if (!(weight > 0)) return {};
+  const Vec3d& n = full.normal(t);
 
   const double scale = full.uv_scale();
   const auto uv = [&](mesh::Index v) {
@@ -24,12 +23,12 @@ DeviationQuadric quadric_of(const FullSurface& full, std::uint32_t t) {
   const Uv u0 = uv(ia), u1 = uv(ib), u2 = uv(ic);
   const double a00 = u1[0] - u0[0], a01 = u1[1] - u0[1], a10 = u2[0] - u0[0], a11 = u2[1] - u0[1];
   const double determinant = a00 * a11 - a01 * a10;
-  if (determinant == 0) return DeviationQuadric::of_map({}, a, n, 0.5 * length, 0);
+  if (determinant == 0) return DeviationQuadric::of_map({}, a, n, weight, 0);
   // e1 = A (a00, a01), e2 = A (a10, a11)
   const std::array<Vec3d, 2> map{(e1 * a11 - e2 * a01) * (1 / determinant), (e2 * a00 - e1 * a10) * (1 / determinant)};
   const double stretch = squared_norm(map[0]) + squared_norm(map[1]);
   const double trust = std::min(1.0, usual_stretch * usual_stretch / stretch);
-  return DeviationQuadric::of_map(map, a - map[0] * u0[0] - map[1] * u0[1], n, 0.5 * length, slip * trust);
+  return DeviationQuadric::of_map(map, a - map[0] * u0[0] - map[1] * u0[1], n, weight, own_slip * trust);
 }
 
 } // namespace
