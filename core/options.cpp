@@ -38,7 +38,8 @@ constexpr std::array<OptionInfo, 19> table{{
      "what is baked into the atlas: auto is the base colour and every texture that the materials have, all that and "
      "what comes from the geometry"},
     {"normal_bits", "8 | 16", "8", "bits a channel of the normal maps"},
-    {"compression", "none | draco", "none", "how the geometry is stored in the result"},
+    {"compression", "none | draco | meshopt | quantized", "none",
+     "how the geometry is stored in the result; quantized: normals and tangents in 16 bits, and meshopt"},
     {"output", "glb | zip", "glb", "one GLB; or a zip of it, of each level of detail by itself, and of a manifest"},
     {"lods", "a list such as 0.25,0.05,0.01: parts of the triangles, their numbers, or deviation:0.1", "",
      "levels of detail on the same atlas, from fine to coarse; deviation: in per cent of the model's diagonal"},
@@ -86,7 +87,7 @@ constexpr std::array<std::string_view, 4> sources{"auto", "pattern", "cubemap", 
 constexpr std::array<std::string_view, 2> pages{"per-material", "single"};
 constexpr std::array<std::string_view, 3> formats{"png", "jpeg", "webp"};
 constexpr std::array<std::string_view, 2> topologies{"repair", "strict"};
-constexpr std::array<std::string_view, 2> compressions{"none", "draco"};
+constexpr std::array<std::string_view, 4> compressions{"none", "draco", "meshopt", "quantized"};
 constexpr std::array<std::string_view, 2> outputs{"glb", "zip"};
 
 // "0.25", "5000" or "deviation:0.1".

@@ -17,7 +17,7 @@ enum class Quality { draft, standard, high };
 enum class TextureSource { automatic, pattern, cubemap, base_color };
 enum class AtlasPages { per_material, single };
 enum class TextureFormat { png, jpeg, webp };
-enum class Compression { none, draco };
+enum class Compression { none, draco, meshopt, quantized };
 enum class TopologyPolicy { repair, strict };
 enum class OutputForm { glb, zip };
 
@@ -84,6 +84,7 @@ struct Options {
   std::uint32_t jpeg_quality = 90; // 1 to 100; WebP's too
   MapSelection maps;
   std::uint32_t normal_bits = 8; // 8 or 16 a channel, of the normal maps
+  // draco, meshopt: without loss. quantized: normals and tangents in 16 bits a component, and meshopt.
   Compression compression = Compression::none;
   OutputForm output = OutputForm::glb; // zip: each level as a file of its own too, with a manifest
   std::vector<LodTarget> lods; // levels of detail beside the full surface, from fine to coarse

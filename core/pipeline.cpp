@@ -81,6 +81,7 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   result.preview_png = preview(asset, surface, sphere.cut, maps.pages, request.options.threads);
   result.atlas_png = atlas_picture(maps, request.options);
   result.maps = std::move(maps.files);
+  if (request.options.compression == Compression::quantized) quantise(delivery, levels);
   dump_bytes(dump, "4-atlas.png", result.atlas_png);
   dump_bytes(dump, "5-preview.png", result.preview_png);
   result.glb = asset::write_asset(asset, delivery.primitives, maps.images, extras_of(report),

@@ -145,14 +145,19 @@ struct NewImage {
   std::string name = "atlas";
 };
 
+// Compression::quantized: NORMAL and TANGENT of floats become normalized 16-bit integers (KHR_mesh_quantization), which
+// turns them by less than 0.003 degrees.
+void quantise_directions(NewPrimitive& primitive);
+
 // Writes the GLB: the document as it came (nodes, names, materials, skins, animations, cameras, extras, unknown
 // extensions), with primitive i of `asset` replaced by primitives[i], textures of its material by `images` on the
 // atlas' TEXCOORD set, and `extras_json` (a JSON object as text) under asset.extras.orbis. A raw Draco input becomes a
 // document with one node, mesh and material. Materials that other primitives use too are cloned, not changed.
 // Buffers hold only what is still referenced. Same input, same bytes.
 // With Compression::draco the new primitives are written with KHR_draco_mesh_compression, positions and _SPHERE
-// lossless (the sphere coordinates must not be quantised: they would fold). Levels of detail are added as MSFT_lod
-// (levels.h), their meshes behind the document's, level by level.
+// lossless (the sphere coordinates must not be quantised: they would fold); with meshopt and quantized as
+// EXT_meshopt_compression, lossless too, where a triangle may begin with another of its corners. Levels of detail are
+// added as MSFT_lod (levels.h), their meshes behind the document's, level by level.
 [[nodiscard]] Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives,
                                 std::span<const NewImage> images, std::string_view extras_json, Compression compression,
                                 std::span<const NewLevel> levels = {});

@@ -76,4 +76,23 @@ Bytes decode_meshopt(std::span<const std::byte> data, const MeshoptView& view, c
   return out;
 }
 
+Bytes encode_meshopt_vertices(std::span<const std::byte> bytes, std::size_t stride) {
+  const std::size_t count = bytes.size() / stride;
+  meshopt_encodeVertexVersion(0);
+  Bytes out(meshopt_encodeVertexBufferBound(count, stride));
+  out.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(out.data()), out.size(), bytes.data(), count,
+                                        stride));
+  if (out.empty()) throw Error(ErrorCode::internal, "vertices could not be encoded with meshopt");
+  return out;
+}
+
+Bytes encode_meshopt_triangles(std::span<const std::uint32_t> indices, std::size_t vertex_count) {
+  meshopt_encodeIndexVersion(1);
+  Bytes out(meshopt_encodeIndexBufferBound(indices.size(), vertex_count));
+  out.resize(meshopt_encodeIndexBuffer(reinterpret_cast<unsigned char*>(out.data()), out.size(), indices.data(),
+                                       indices.size()));
+  if (out.empty()) throw Error(ErrorCode::internal, "triangles could not be encoded with meshopt");
+  return out;
+}
+
 } // namespace orbis::asset

@@ -7,6 +7,7 @@
 #include "core/asset/accessor_layout.h"
 #include "core/asset/extensions.h"
 #include "core/asset/glb.h"
+#include "core/asset/meshopt_codec.h"
 #include "core/asset/references.h"
 
 namespace orbis::asset {
@@ -79,7 +80,8 @@ Json accessor_of_indices(std::size_t count, std::size_t vertex_count) {
   return Json{{"componentType", static_cast<int>(type)}, {"count", count}, {"type", "SCALAR"}};
 }
 
-Output::Output(const Document& document) : json(document.json), document_(document) {
+Output::Output(const Document& document, GeometryCoding coding)
+    : json(document.json), document_(document), coding_(coding) {
   for (std::size_t i = 0; i < array_size(json, "bufferViews"); ++i) {
     views_.push_back(document_.view(i));
     // Decoded data is written as it is.
@@ -106,6 +108,19 @@ std::size_t Output::add_view(Bytes bytes, Target target, std::size_t stride) {
   return views_.size() - 1;
 }
 
+// EXT_meshopt_compression: the view is a part of a buffer that holds nothing (the second one, the fallback that readers
+// who know the extension do not need), and names the compressed bytes in the first.
+std::size_t Output::add_meshopt_view(Bytes encoded, std::size_t count, std::size_t stride, Target target) {
+  const bool is_vertices = target == Target::vertices;
+  Json stored{{"buffer", 0},          {"byteOffset", 0}, {"byteLength", encoded.size()},
+              {"byteStride", stride}, {"count", count},  {"mode", is_vertices ? "ATTRIBUTES" : "TRIANGLES"}};
+  const std::size_t number = add_view(std::move(encoded), target, is_vertices ? stride : 0);
+  Json& view = json["bufferViews"][number];
+  view["byteLength"] = count * stride;
+  view["extensions"][std::string(meshopt_extensions[0])] = std::move(stored);
+  return number;
+}
+
 std::size_t Output::add_accessor(Json accessor) {
   Json& array = json["accessors"];
   if (!array.is_array()) array = Json::array();
@@ -124,18 +139,28 @@ std::size_t Output::add_attribute(const Attribute& attribute) {
       std::memcpy(padded.data() + v * stride, attribute.data.data() + v * size, size);
     }
   }
-  Json accessor{{"bufferView", add_view(std::move(padded), Target::vertices, stride)}};
+  const std::size_t view =
+      coding_ == GeometryCoding::plain
+          ? add_view(std::move(padded), Target::vertices, stride)
+          : add_meshopt_view(encode_meshopt_vertices(padded, stride), attribute.count(), stride, Target::vertices);
+  Json accessor{{"bufferView", view}};
   accessor.update(accessor_of(attribute));
   return add_accessor(std::move(accessor));
 }
 
 std::size_t Output::add_indices(std::span<const std::uint32_t> indices, std::size_t vertex_count) {
   const std::size_t size = fits_16_bits(vertex_count) ? 2 : 4;
-  Bytes bytes(indices.size() * size);
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    for (std::size_t b = 0; b < size; ++b) bytes[i * size + b] = static_cast<std::byte>(indices[i] >> (8 * b) & 0xff);
+  Json accessor;
+  if (coding_ == GeometryCoding::meshopt) {
+    accessor["bufferView"] =
+        add_meshopt_view(encode_meshopt_triangles(indices, vertex_count), indices.size(), size, Target::indices);
+  } else {
+    Bytes bytes(indices.size() * size);
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+      for (std::size_t b = 0; b < size; ++b) bytes[i * size + b] = static_cast<std::byte>(indices[i] >> (8 * b) & 0xff);
+    }
+    accessor["bufferView"] = add_view(std::move(bytes), Target::indices);
   }
-  Json accessor{{"bufferView", add_view(std::move(bytes), Target::indices)}};
   accessor.update(accessor_of_indices(indices.size(), vertex_count));
   return add_accessor(std::move(accessor));
 }
@@ -160,17 +185,29 @@ void Output::drop_unreferenced() {
 
 Bytes Output::glb() {
   Bytes bin;
+  std::size_t fallback = 0;
   for (std::size_t i = 0; i < views_.size(); ++i) {
     bin.resize(aligned(bin.size()));
     Json& view = json["bufferViews"][i];
-    view["buffer"] = 0;
-    view["byteOffset"] = bin.size();
+    Json* stored = find_path(view, "extensions", meshopt_extensions[0]);
+    if (stored) {
+      view["buffer"] = 1;
+      view["byteOffset"] = fallback;
+      fallback += aligned(view["byteLength"].get<std::size_t>());
+    }
+    Json& place = stored ? *stored : view;
+    place["buffer"] = 0;
+    place["byteOffset"] = bin.size();
     bin.insert(bin.end(), views_[i].begin(), views_[i].end());
   }
   if (bin.empty()) {
     json.erase("buffers");
   } else {
     json["buffers"][0]["byteLength"] = bin.size();
+    if (fallback > 0) {
+      json["buffers"][1] = {{"byteLength", fallback}};
+      json["buffers"][1]["extensions"][std::string(meshopt_extensions[0])] = {{"fallback", true}};
+    }
   }
   return join_glb(json.dump(), bin);
 }

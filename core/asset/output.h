@@ -13,10 +13,13 @@ namespace orbis::asset {
 
 enum class Target { none = 0, vertices = 34962, indices = 34963 };
 
+// How the views of attributes and indices that are added are stored.
+enum class GeometryCoding { plain, meshopt };
+
 class Output {
 public:
   // `document` outlives the output: the bytes of views that stay are taken from it.
-  explicit Output(const Document& document);
+  explicit Output(const Document& document, GeometryCoding coding = GeometryCoding::plain);
 
   Json json; // the document; patch it at will, but add views and accessors through the functions below
 
@@ -26,7 +29,7 @@ public:
   // A vertex attribute with a view of its own, padded to a stride of a multiple of 4; with bounds where the
   // specification asks for them (POSITION).
   std::size_t add_attribute(const Attribute& attribute);
-  // 16 bits where the largest index allows it.
+  // 16 bits where the largest index allows it. With meshopt a triangle may begin with another corner.
   std::size_t add_indices(std::span<const std::uint32_t> indices, std::size_t vertex_count);
 
   // Drops accessors, textures, images, samplers and views that nothing refers to, and renumbers the rest.
@@ -36,8 +39,11 @@ public:
   [[nodiscard]] Bytes glb();
 
 private:
+  std::size_t add_meshopt_view(Bytes encoded, std::size_t count, std::size_t stride, Target target);
+
   const Document& document_;
-  std::vector<std::span<const std::byte>> views_; // contents of /bufferViews, by number
+  GeometryCoding coding_;
+  std::vector<std::span<const std::byte>> views_; // contents of /bufferViews, by number, as stored
   std::deque<Bytes> added_;                       // keeps the contents of new views
 };
 

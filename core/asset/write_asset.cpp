@@ -25,10 +25,11 @@ Json write_attributes(Output& out, std::span<const Attribute> attributes) {
   return json;
 }
 
-// Indices and attributes, plain or compressed. Morph targets stay outside of the Draco data, as the extension asks.
+// Indices and attributes, with Draco or as the output stores them. Morph targets stay outside of the Draco data, as the
+// extension asks.
 void write_geometry(Output& out, Json& primitive, const NewPrimitive& source, Compression compression) {
   const std::size_t vertices = source.attributes.front().count();
-  if (compression == Compression::none || !can_be_draco(source.indices, source.attributes)) {
+  if (compression != Compression::draco || !can_be_draco(source.indices, source.attributes)) {
     primitive["attributes"] = write_attributes(out, source.attributes);
     primitive["indices"] = out.add_indices(source.indices, vertices);
     return;
@@ -210,7 +211,9 @@ void update_extensions(Json& json, const Json& before, std::span<const NewPrimit
       *names = std::move(kept);
     }
   }
-  if (used.contains(std::string(draco_extension))) require(json, draco_extension);
+  for (const std::string_view coding : {draco_extension, meshopt_extensions[0]}) {
+    if (used.contains(std::string(coding))) require(json, coding);
+  }
   // Without a fallback in another format.
   if (std::any_of(images.begin(), images.end(), [](const NewImage& i) { return i.mime_type == "image/webp"; })) {
     require(json, webp_extension);
@@ -281,7 +284,8 @@ Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, 
     throw Error(ErrorCode::internal, "there must be one new primitive for each of the asset's");
   }
   const Document& document = *asset.document;
-  Output out(document);
+  const bool is_meshopt = compression == Compression::meshopt || compression == Compression::quantized;
+  Output out(document, is_meshopt ? GeometryCoding::meshopt : GeometryCoding::plain);
   embed_images(out, document);
   const std::size_t first_texture = add_textures(out, images);
   std::vector<AtlasUser> users;

@@ -39,6 +39,18 @@ void read_uv(const asset::Primitive& primitive, std::uint32_t texcoord, std::vec
     out.push_back({static_cast<float>(uv->get(v, 0)), static_cast<float>(uv->get(v, 1))});
 }
 
+// A triangle may begin with another corner: EXT_meshopt_compression does not keep the first.
+bool are_same_triangles(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t t = 0; t < a.size(); t += 3) {
+    const auto begins_at = [&](std::size_t k) {
+      return a[t] == b[t + k] && a[t + 1] == b[t + (k + 1) % 3] && a[t + 2] == b[t + (k + 2) % 3];
+    };
+    if (!begins_at(0) && !begins_at(1) && !begins_at(2)) return false;
+  }
+  return true;
+}
+
 // What the file says, all primitives in a row.
 struct ReadBack {
   std::vector<std::uint32_t> first; // primitive of the input -> its first vertex in the row
@@ -62,7 +74,8 @@ ReadBack read_back(std::span<const std::byte> glb, const asset::Asset& input, co
     out.sphere.insert(out.sphere.end(), sphere.begin(), sphere.end());
     out.position.insert(out.position.end(), position.begin(), position.end());
     const std::vector<std::uint32_t>& component = delivery.component_of[i];
-    if (q.indices != delivery.primitives[i].indices) refuse("a primitive has not the triangles that were written");
+    if (!are_same_triangles(q.indices, delivery.primitives[i].indices))
+      refuse("a primitive has not the triangles that were written");
     read_uv(q, delivery.primitives[i].atlas_texcoord, out.uv);
     for (std::size_t t = 0; t < component.size(); ++t) {
       out.triangles.push_back({first + q.indices[3 * t], first + q.indices[3 * t + 1], first + q.indices[3 * t + 2]});

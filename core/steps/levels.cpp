@@ -162,6 +162,12 @@ std::vector<DetailLevel> make_levels(const asset::Asset& asset, const Surface& s
   return out;
 }
 
+void quantise(Delivery& full, std::span<DetailLevel> levels) {
+  for (asset::NewPrimitive& primitive : full.primitives) asset::quantise_directions(primitive);
+  for (DetailLevel& level : levels)
+    for (asset::NewPrimitive& primitive : level.delivery.primitives) asset::quantise_directions(primitive);
+}
+
 std::vector<asset::NewLevel> in_asset(std::span<const DetailLevel> levels, const Report& report) {
   std::vector<asset::NewLevel> out;
   for (std::size_t i = 0; i < levels.size(); ++i)

@@ -27,6 +27,9 @@ struct DetailLevel {
                                                    const texture::CutMesh& cut, const Delivery& full,
                                                    Progress& progress, Report& report);
 
+// Normals and tangents of the full surface and of all levels in 16 bits.
+void quantise(Delivery& full, std::span<DetailLevel> levels);
+
 // As write_asset takes them.
 [[nodiscard]] std::vector<asset::NewLevel> in_asset(std::span<const DetailLevel> levels, const Report& report);
 

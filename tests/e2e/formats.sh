@@ -112,6 +112,16 @@ test_draco_can_come_out_and_go_in_again() {
   expect "the surface's triangles" "$(json .topology.triangles)" "$triangles"
 }
 
+test_meshopt_can_come_out_and_go_in_again() {
+  local triangles compression
+  for compression in meshopt quantized; do
+    QUERY="compression=$compression&texture_size=256&maps=base_color,normal" textured "$compression-out" "$models/egg.glb"
+    triangles=$(json .output.triangles)
+    textured "$compression-again" "$outputs/$compression-out.glb"
+    expect "the surface's triangles" "$(json .topology.triangles)" "$triangles"
+  done
+}
+
 test_a_result_can_be_textured_again() {
   textured once "$models/egg.glb"
   textured twice "$outputs/once.glb"

@@ -209,7 +209,8 @@ TEST_CASE("scenes, cameras, lights, skins, instances, extras and unknown extensi
   b.json["extras"] = {{"kept", true}};
   b.json["asset"]["copyright"] = "someone";
   const Asset asset = read_asset(b.glb(), {}, Limits{});
-  for (const Compression compression : {Compression::none, Compression::draco}) check_kept(asset, compression);
+  for (const Compression compression : {Compression::none, Compression::draco, Compression::meshopt})
+    check_kept(asset, compression);
 }
 
 TEST_CASE("the extensions that a document names stay named as long as they are in use") {
