@@ -91,7 +91,7 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   certify_file(result.glb, asset, surface, sphere, delivery, report);
   certify_levels(result.glb, asset, surface, levels, report);
   if (request.options.output == OutputForm::zip)
-    result.glb = archive_of(std::move(result.glb), asset, surface, levels, maps.images, report);
+    result.glb = archive_of(std::move(result.glb), asset, surface, delivery, levels, maps.images, report);
   clock.report(Stage::certify, 1, 1);
 
   report.stages = clock.times();

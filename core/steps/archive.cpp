@@ -29,11 +29,22 @@ asset::Bytes bytes_of(const std::string& text) {
   return {bytes.begin(), bytes.end()};
 }
 
+// In the result a level's materials are the full surface's with some textures changed; alone it must name them all.
+std::vector<asset::NewPrimitive> with_textures_of(const Delivery& full, const DetailLevel& level) {
+  std::vector<asset::NewPrimitive> out = level.delivery.primitives;
+  for (std::size_t p = 0; p < out.size(); ++p) {
+    const asset::NewPrimitive& shown = full.primitives[p];
+    out[p].textures.insert(shown.textures.begin(), shown.textures.end());
+    out[p].plain_base_color = shown.plain_base_color;
+  }
+  return out;
+}
+
 } // namespace
 
 std::vector<std::byte> archive_of(std::vector<std::byte> model, const asset::Asset& asset, const Surface& surface,
-                                  std::span<const DetailLevel> levels, std::span<const asset::NewImage> atlas,
-                                  const Report& report) {
+                                  const Delivery& full, std::span<const DetailLevel> levels,
+                                  std::span<const asset::NewImage> atlas, const Report& report) {
   Json manifest{{"version", version},
                 {"model",
                  {{"file", "model.glb"},
@@ -46,7 +57,7 @@ std::vector<std::byte> archive_of(std::vector<std::byte> model, const asset::Ass
   members.push_back({"model.glb", std::move(model)});
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const std::string file = "lod" + std::to_string(i + 1) + ".glb";
-    members.push_back({file, asset::write_asset(asset, levels[i].delivery.primitives, atlas, extras_of(report),
+    members.push_back({file, asset::write_asset(asset, with_textures_of(full, levels[i]), atlas, extras_of(report),
                                                 report.options.compression)});
     certify_level_file(members.back().bytes, asset, surface, levels[i], i);
     manifest["levels"].push_back(entry_of(report.levels[i], file));

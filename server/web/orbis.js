@@ -220,7 +220,7 @@ async function showResult(state) {
   const triangles = `${report.input.triangles.toLocaleString()} triangles`;
   $("detail").textContent = state.cached ? `${triangles}, known from before` : `${triangles} in ${milliseconds(state.timing.wall_ms)}`;
   $("download").href = await objectUrl(state.links.result);
-  $("download").download = modelOf(files).name.replace(/\.[^.]*$/, "") + "-orbis.glb";
+  $("download").download = modelOf(files).name.replace(/\.[^.]*$/, "") + `-orbis.${state.options.output}`;
   $("report").href = URL.createObjectURL(new Blob([JSON.stringify(report, null, 2)], {type: "application/json"}));
   $("download").hidden = $("report").hidden = false;
   for (const [id, link] of [["preview", "preview.png"], ["atlas", "atlas.png"]]) {

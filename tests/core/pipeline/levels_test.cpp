@@ -220,6 +220,7 @@ TEST_CASE("with output=zip every level is a file of its own, named in the manife
   request.options.texture_size = 256;
   set_option(request.options, "lods", "0.2,0.05");
   set_option(request.options, "output", "zip");
+  set_option(request.options, "maps", "base_color,normal");
   const Result result = process(request, {}, progress);
   const std::map<std::string, std::vector<std::byte>> files = stored_members(result.glb);
   REQUIRE(files.size() == 4);
@@ -233,6 +234,8 @@ TEST_CASE("with output=zip every level is a file of its own, named in the manife
     CHECK(level.primitives[0].indices.size() == 3 * entry["triangles"].get<std::size_t>());
     CHECK(level.primitives[0].vertex_count() == entry["vertices"]);
     CHECK(level.primitives[0].find("_SPHERE") != nullptr);
+    for (const asset::TextureSlot slot : {asset::TextureSlot::base_color, asset::TextureSlot::normal})
+      CHECK(asset::material_texture(level, level.primitives[0], slot).has_value());
   }
   CHECK(process(request, {}, progress).glb == result.glb);
 }
