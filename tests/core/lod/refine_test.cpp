@@ -73,7 +73,7 @@ TEST_CASE("a level that was shaken comes back to the full surface, with as many 
     const lod::Ruler ruler(full, threads);
     lod::Level level = level_of(world, full, 400);
     const double before = ruler.texture_deviation(level).mean;
-    shake(level, 0.04, seed);
+    shake(level, 0.07, seed);
     const double shaken = ruler.texture_deviation(level).mean;
     REQUIRE(shaken > 1.5 * before);
     lod::refine(full, level);
