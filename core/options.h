@@ -87,10 +87,10 @@ struct Options {
   // draco, meshopt: without loss. quantized: normals and tangents in 16 bits a component, and meshopt.
   Compression compression = Compression::none;
   OutputForm output = OutputForm::glb; // zip: each level as a file of its own too, with a manifest
-  std::vector<LodTarget> lods; // levels of detail beside the full surface, from fine to coarse
-  RemeshTarget remesh;         // of the largest component; smaller ones get triangles of about the same size
-  bool sphere_morph = false;   // a morph target that takes each component to its sphere
-  std::uint32_t threads = 0;   // 0: as many as the machine has; the result does not depend on it
+  std::vector<LodTarget> lods;         // levels of detail beside the full surface, from fine to coarse
+  RemeshTarget remesh;                 // of the largest component; smaller ones get triangles of about the same size
+  bool sphere_morph = false;           // a morph target that takes each component to its sphere
+  std::uint32_t threads = 0;           // 0: as many as the machine has; the result does not depend on it
 };
 
 // One row per option: its name, the values it takes (for people), its default, and what it does.

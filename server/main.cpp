@@ -74,7 +74,7 @@ void describe_run(CLI::App& app, CommandLine& line) {
   run->add_option("input", line.run.input, "a model: GLB, glTF, Draco, OBJ, PLY, STL, or a zip of one with its files")
       ->required()
       ->type_name("IN");
-  run->add_option("-o,--output", line.run.output, "the textured GLB")->required()->type_name("OUT.glb");
+  run->add_option("-o,--out", line.run.output, "the textured GLB")->required()->type_name("OUT.glb");
   run->add_option("--report", line.run.report, "what was found, done and proved")->type_name("REPORT.json");
   run->add_option("--preview", line.run.preview, "the model and its spheres, to look at")->type_name("PREVIEW.png");
   run->add_option("--attach", line.run.attachments,
