@@ -11,7 +11,7 @@ namespace {
 // Options are numbers and truth values in JSON where they are in C++: what reads as one is one, but for a list of one.
 Json option_value(const Options& options, std::string_view name) {
   const std::string text = get_option(options, name);
-  if (name == "lods") return text;
+  if (name == "lods" || name == "morph_to") return text;
   const Json parsed = Json::parse(text, nullptr, false);
   return parsed.is_number() || parsed.is_boolean() ? parsed : Json(text);
 }

@@ -170,6 +170,19 @@ Json remesh_json(const std::optional<Report::Remesh>& r) {
           {"hausdorff_distance", r->hausdorff_distance}};
 }
 
+Json morph_json(const std::optional<Report::Morph>& m) {
+  if (!m) return nullptr;
+  return {{"format", m->format},
+          {"input_triangles", m->input_triangles},
+          {"mean_distance", m->mean_distance},
+          {"mean_distance_from_input", m->mean_distance_from_input},
+          {"hausdorff_distance", m->hausdorff_distance},
+          {"features", m->features},
+          {"mean_angle_before", m->mean_angle_before},
+          {"mean_angle", m->mean_angle},
+          {"largest_angle", m->largest_angle}};
+}
+
 Json vector_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 Json map_json(const Report::BakedMap& m) {
@@ -227,6 +240,7 @@ Json to_json(const Report& report) {
           {"atlas", atlas_json(report.atlas)},
           {"levels", std::move(levels)},
           {"remesh", remesh_json(report.remesh)},
+          {"morph", morph_json(report.morph)},
           {"maps", std::move(maps)},
           {"output", {{"triangles", report.output_triangles}, {"vertices", report.output_vertices}}},
           {"certificate", certificate_json(report.certificate)},

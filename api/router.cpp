@@ -169,6 +169,10 @@ std::shared_ptr<void> take_slot(std::atomic<std::uint32_t>& taken, std::uint32_t
 
 } // namespace
 
+bool is_upload(std::string_view method, std::string_view path) {
+  return method == "POST" && (path == "/v1/jobs" || path == "/v1/morphs");
+}
+
 Response Router::problem_response(const Problem& problem) const {
   Response response = text_response(problem.status, "application/problem+json", dump(to_json(problem)));
   if (problem.status == 401) response.set("WWW-Authenticate", "Bearer");
@@ -180,7 +184,7 @@ Response Router::problem_response(const Problem& problem) const {
 
 std::optional<Response> Router::refuse_early(const Request& head) {
   try {
-    if (head.path != "/v1/jobs" || head.method != "POST") return handle(head);
+    if (!is_upload(head.method, head.path)) return handle(head);
     check_key(head);
     check_media_type(head);
     check_capacity();
@@ -205,11 +209,11 @@ Response Router::handle(const Request& request) {
 
 Response Router::route(const Request& request) {
   const std::string_view path = request.path;
-  constexpr std::string_view jobs = "/v1/jobs", problems = "/problems/";
+  constexpr std::string_view jobs = "/v1/jobs", morphs = "/v1/morphs", problems = "/problems/";
   if (path == jobs || path.starts_with("/v1/jobs/")) {
     check_key(request);
     if (path == jobs) {
-      if (request.method == "POST") return post_job(request);
+      if (request.method == "POST") return post_job(request, parse_submission);
       return is_read(request) ? list_jobs(request) : method_not_allowed("GET, POST");
     }
     const std::string_view tail = path.substr(jobs.size() + 1);
@@ -217,6 +221,10 @@ Response Router::route(const Request& request) {
     return job_route(request, tail.substr(0, slash), tail.substr(slash));
   }
   if (path.starts_with(problems) && is_read(request)) return problem_page(path.substr(problems.size()));
+  if (path == morphs) {
+    check_key(request);
+    return request.method == "POST" ? post_job(request, parse_morph) : method_not_allowed("POST");
+  }
   const bool known = path == "/livez" || path == "/readyz" || path == "/metrics" || path == "/openapi.json";
   if (!known) refuse_unknown_path();
   if (!is_read(request)) return method_not_allowed("GET");
@@ -284,11 +292,11 @@ template <class Done> Job Router::wait_until(Job job, std::chrono::milliseconds 
   return job;
 }
 
-Response Router::post_job(const Request& request) {
+Response Router::post_job(const Request& request, Submission (*parse)(const Request&)) {
   check_media_type(request);
   check_capacity();
   const auto wait = preferred_wait(request.header("Prefer"));
-  Job job = jobs_.submit(parse_submission(request));
+  Job job = jobs_.submit(parse(request));
   const std::string address = "/v1/jobs/" + job.id;
   Response response;
   if (wait) {

@@ -18,6 +18,9 @@ struct RouterSettings {
   std::chrono::seconds event_comment{15}; // a comment on an idle event stream, so that proxies keep it open
 };
 
+// Whether the request brings models: its body is spooled before it is handled.
+[[nodiscard]] bool is_upload(std::string_view method, std::string_view path);
+
 // Thread-safe.
 class Router {
 public:
@@ -35,7 +38,8 @@ private:
   void check_key(const Request& request) const;
   void check_capacity() const;
 
-  [[nodiscard]] Response post_job(const Request& request);
+  // Starts the job that a POST to /v1/jobs or /v1/morphs asks for.
+  [[nodiscard]] Response post_job(const Request& request, Submission (*parse)(const Request&));
   [[nodiscard]] Response get_job(const Request& request, std::string_view id);
   [[nodiscard]] Response delete_job(std::string_view id);
   [[nodiscard]] Response list_jobs(const Request& request);

@@ -76,6 +76,32 @@ void check_format(const Part& model) {
       Error(ErrorCode::unsupported_format, "the model is none of GLB, glTF JSON, Draco, OBJ, PLY, STL and zip")));
 }
 
+// Options, the model (its name is empty where there is none), and the other parts as files.
+Submission parse_parts(const Request& request, std::string_view model_name) {
+  Submission submission;
+  submission.idempotency_key = request.header("Idempotency-Key");
+  if (submission.idempotency_key.size() > 255) {
+    refuse(Refusal::bad_request, "the Idempotency-Key is longer than 255 characters");
+  }
+  const Part* options = nullptr;
+  for (const Part& part : request.parts) {
+    if (part.name == "options") {
+      options = &part;
+    } else if (part.name == model_name) {
+      if (!submission.model.name.empty())
+        refuse(Refusal::bad_request, "there are two parts named '" + std::string(model_name) + "'");
+      submission.model = part;
+    } else if (part.file_name.empty()) {
+      refuse(Refusal::bad_request, "the part '" + part.name.substr(0, 64) + "' has no file name; parts are '" +
+                                       std::string(model_name) + "', 'options', or files that the model names");
+    } else {
+      submission.files.push_back(part);
+    }
+  }
+  submission.options = parse_options(request, options);
+  return submission;
+}
+
 } // namespace
 
 void check_media_type(const Request& request) {
@@ -102,34 +128,27 @@ void check_media_type(const Request& request) {
 }
 
 Submission parse_submission(const Request& request) {
-  Submission submission;
-  submission.idempotency_key = request.header("Idempotency-Key");
-  if (submission.idempotency_key.size() > 255) {
-    refuse(Refusal::bad_request, "the Idempotency-Key is longer than 255 characters");
-  }
-  const Part* options = nullptr;
-  const Part* model = nullptr;
-  for (const Part& part : request.parts) {
-    if (part.name == "options") {
-      options = &part;
-    } else if (part.name == "model") {
-      if (model != nullptr) refuse(Refusal::bad_request, "there are two parts named 'model'");
-      model = &part;
-    } else if (part.file_name.empty()) {
-      refuse(Refusal::bad_request,
-             "the part '" + part.name.substr(0, 64) +
-                 "' has no file name; parts are 'model', 'options', or files that the model names");
-    } else {
-      submission.files.push_back(part);
-    }
-  }
-  submission.options = parse_options(request, options);
-  if (model == nullptr) {
+  Submission submission = parse_parts(request, "model");
+  if (submission.model.name.empty()) {
     refuse(Refusal::bad_request,
            "there is no model: send it as the body, or as the part 'model' of multipart/form-data");
   }
-  check_format(*model);
-  submission.model = *model;
+  check_format(submission.model);
+  return submission;
+}
+
+Submission parse_morph(const Request& request) {
+  Submission submission = parse_parts(request, "a");
+  const auto second = std::ranges::find(submission.files, std::string_view("b"), &Part::name);
+  if (submission.model.name.empty() || second == submission.files.end()) {
+    refuse(Refusal::bad_request, "a morph takes two models: send them as the parts 'a' and 'b' of multipart/form-data");
+  }
+  if (!submission.options.morph_to.empty()) {
+    refuse(Refusal::bad_request, "the second model is the part 'b': 'morph_to' is for a job with one model");
+  }
+  check_format(submission.model);
+  check_format(*second);
+  submission.options.morph_to = second->file_name;
   return submission;
 }
 

@@ -18,4 +18,7 @@ void check_media_type(const Request& request);
 // (core/model_format.h).
 [[nodiscard]] Submission parse_submission(const Request& request);
 
+// POST /v1/morphs: the parts `a` and `b` are the models; b goes with the job as the file that options.morph_to names.
+[[nodiscard]] Submission parse_morph(const Request& request);
+
 } // namespace orbis::api

@@ -10,7 +10,7 @@
 namespace orbis {
 namespace {
 
-constexpr std::array<OptionInfo, 19> table{{
+constexpr std::array<OptionInfo, 21> table{{
     {"topology", "repair | strict", "repair",
      "repair: whatever has triangles is parametrized; strict: anything but one closed component of genus 0 is refused"},
     {"weld_tolerance", "a number, 0 or more", "0",
@@ -47,6 +47,10 @@ constexpr std::array<OptionInfo, 19> table{{
      "a semi-regular triangulation in place of the input's: a regular polyhedron divided N times, sampled from the "
      "surface through its sphere"},
     {"sphere_morph", "true | false", "false", "a morph target 'sphere' that takes each component to its sphere"},
+    {"morph_to", "the name of a file that comes with the model", "",
+     "a second model: the result is one mesh that morphs from the first to it"},
+    {"features", "pairs of points such as [[[0,0,1],[0,0,2]]], 256 at most", "",
+     "with morph_to: points of the first model, and those of the second that they should become"},
     {"threads", "0 to 256", "0", "threads of the embedding, 0 for as many as the machine has; the result is the same"},
 }};
 
@@ -146,6 +150,70 @@ RemeshTarget remesh_target(std::string_view name, std::string_view text) {
   refuse(name, text);
 }
 
+// A file's name, as a path below the model.
+std::string file_name(std::string_view name, std::string_view text) {
+  const bool is_plain =
+      std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) >= 32; });
+  if (text.size() > 255 || !is_plain) refuse(name, text);
+  return std::string(text);
+}
+
+// Reads "[[[0,0,1],[0,0,2]],…]": a JSON array of arrays of two points of three numbers.
+class FeatureReader {
+public:
+  FeatureReader(std::string_view name, std::string_view text) : name_(name), text_(text), rest_(text) {}
+
+  std::vector<FeaturePair> run() {
+    std::vector<FeaturePair> out;
+    expect('[');
+    while (!accept(']')) {
+      if (!out.empty()) expect(',');
+      expect('[');
+      const Vec3d from = point();
+      expect(',');
+      const Vec3d to = point();
+      expect(']');
+      out.push_back({from, to});
+      if (out.size() > most_features) refuse(name_, text_);
+    }
+    skip_blanks();
+    if (!rest_.empty()) refuse(name_, text_);
+    return out;
+  }
+
+private:
+  void skip_blanks() { rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size())); }
+  bool accept(char c) {
+    skip_blanks();
+    if (!rest_.starts_with(c)) return false;
+    rest_.remove_prefix(1);
+    return true;
+  }
+  void expect(char c) {
+    if (!accept(c)) refuse(name_, text_);
+  }
+  double coordinate() {
+    skip_blanks();
+    double value = 0;
+    const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
+    if (error != std::errc{} || !std::isfinite(value)) refuse(name_, text_);
+    rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
+    return value;
+  }
+  Vec3d point() {
+    expect('[');
+    const double x = coordinate();
+    expect(',');
+    const double y = coordinate();
+    expect(',');
+    const double z = coordinate();
+    expect(']');
+    return {x, y, z};
+  }
+
+  std::string_view name_, text_, rest_;
+};
+
 template <class E, std::size_t N> std::string text_of(E value, const std::array<std::string_view, N>& names) {
   return std::string(names.at(static_cast<std::size_t>(value)));
 }
@@ -171,6 +239,21 @@ std::string text_of(const RemeshTarget& target) {
   std::string text = text_of(target.base, remesh_bases);
   if (target.base != RemeshTarget::Base::none) text.append(":").append(std::to_string(target.times));
   return text;
+}
+
+std::string text_of(const std::vector<FeaturePair>& features) {
+  std::string text;
+  const auto add = [&](const Vec3d& p) {
+    text.append("[").append(text_of(p.x)).append(",").append(text_of(p.y)).append(",").append(text_of(p.z)).append("]");
+  };
+  for (const FeaturePair& pair : features) {
+    text += text.empty() ? "[[" : ",[";
+    add(pair.from);
+    text += ',';
+    add(pair.to);
+    text += ']';
+  }
+  return text.empty() ? text : text + "]";
 }
 
 // Names with commas between them. "auto" may be one of them; "all" stands for it and every map that any model has.
@@ -249,6 +332,10 @@ void set_option(Options& options, std::string_view name, std::string_view value)
     options.remesh = remesh_target(name, value);
   } else if (name == "sphere_morph") {
     options.sphere_morph = choice<int>(name, value, truths) == 1;
+  } else if (name == "morph_to") {
+    options.morph_to = file_name(name, value);
+  } else if (name == "features") {
+    options.features = value.empty() ? std::vector<FeaturePair>{} : FeatureReader(name, value).run();
   } else if (name == "threads") {
     options.threads = number<std::uint32_t>(name, value, 0, 256);
   } else {
@@ -275,6 +362,8 @@ std::string get_option(const Options& options, std::string_view name) {
   if (name == "lods") return text_of(options.lods);
   if (name == "remesh") return text_of(options.remesh);
   if (name == "sphere_morph") return text_of(options.sphere_morph, truths);
+  if (name == "morph_to") return options.morph_to;
+  if (name == "features") return text_of(options.features);
   if (name == "threads") return std::to_string(options.threads);
   refuse(name, "");
 }

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/vec3.h"
+
 namespace orbis {
 
 enum class Objective { isometric, conformal, stretch, shape_preserving };
@@ -37,6 +39,13 @@ struct RemeshTarget {
   friend bool operator==(const RemeshTarget&, const RemeshTarget&) = default;
 };
 inline constexpr std::uint32_t most_remesh_times = 8;
+
+// A point near the first model's surface, and the one near the second's that it should become.
+struct FeaturePair {
+  Vec3d from, to; // in each model's own units, before node transforms
+  friend bool operator==(const FeaturePair&, const FeaturePair&) = default;
+};
+inline constexpr std::size_t most_features = 256;
 
 // What can be baked into the atlas. The first five take the place of the materials' textures.
 enum class Map : std::uint8_t {
@@ -90,7 +99,10 @@ struct Options {
   std::vector<LodTarget> lods;         // levels of detail beside the full surface, from fine to coarse
   RemeshTarget remesh;                 // of the largest component; smaller ones get triangles of about the same size
   bool sphere_morph = false;           // a morph target that takes each component to its sphere
-  std::uint32_t threads = 0;           // 0: as many as the machine has; the result does not depend on it
+  // The name of the file with a second model, which the first one is to become; "" for none.
+  std::string morph_to;
+  std::vector<FeaturePair> features; // with morph_to: what is to meet
+  std::uint32_t threads = 0;         // 0: as many as the machine has; the result does not depend on it
 };
 
 // One row per option: its name, the values it takes (for people), its default, and what it does.

@@ -10,6 +10,7 @@
 #include "core/steps/embed.h"
 #include "core/steps/levels.h"
 #include "core/steps/measure.h"
+#include "core/steps/morph.h"
 #include "core/steps/paint.h"
 #include "core/steps/remesh.h"
 #include "core/steps/snap_and_cut.h"
@@ -53,9 +54,12 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   dump_mesh(dump, "1-surface.obj", surface.mesh.positions, surface.mesh.triangles);
 
   std::vector<Vec3d> points = embed(surface, request.options, clock, checkpoints, report);
+  const std::optional<MorphEnd> end = read_morph_end(request, limits, surface, clock, report);
 
   clock.report(Stage::atlas, 0, 1);
-  const std::optional<RemeshSource> source = resample(asset, surface, points, limits, clock, report);
+  const RemeshTarget target = end ? common_target(request.options, surface, end->surface) : request.options.remesh;
+  const std::optional<RemeshSource> source = resample(asset, surface, points, target, limits, clock, report);
+  if (end) add_morph_target(*end, *source, surface, points, asset, clock, report);
   const CutSphere sphere = snap_and_cut(asset, surface, points, request.options, clock, report);
   const std::vector<Vec3f> delivered = deliverable(sphere.points);
   report.distortion = measure(surface, delivered, report);
@@ -74,6 +78,7 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   BakedMaps maps = bake_maps(request, limits, baked, shown, delivery, levels, clock, report);
 
   clock.report(Stage::encode, 0, 1);
+  if (end) name_morph_target(*end, delivery);
   if (request.options.sphere_morph) {
     add_sphere_morph(asset, surface, delivery);
     for (DetailLevel& level : levels) add_sphere_morph(asset, surface, level.delivery);

@@ -107,6 +107,18 @@ struct Report {
     double hausdorff_distance = 0;
   };
   std::optional<Remesh> remesh;
+  // What options.morph_to did; remesh says how far the first model's end is from it.
+  struct Morph {
+    std::string format; // of the second model
+    std::uint64_t input_triangles = 0;
+    // Of the second model's end from it, in per cent of its diagonal, as for a remesh.
+    double mean_distance = 0, mean_distance_from_input = 0, hausdorff_distance = 0;
+    std::uint64_t features = 0; // pairs of points
+    // Between the features' points on the two spheres, in degrees: as the models lie, and as they were brought
+    // together.
+    double mean_angle_before = 0, mean_angle = 0, largest_angle = 0;
+  };
+  std::optional<Morph> morph;
   // The images that were baked, all of the texture coordinates that the result calls the atlas'.
   struct BakedMap {
     std::string name; // of the file: "normal.png"; with several pages "normal-2.png"

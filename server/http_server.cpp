@@ -178,8 +178,11 @@ public:
     set_expect_100_continue_handler([this](const auto& request, auto& response) {
       return refuse_early(request, response) ? response.status : 100;
     });
-    Post("/v1/jobs",
-         [this](const auto& request, auto& response, const auto& reader) { answer_upload(request, response, reader); });
+    for (const char* path : {"/v1/jobs", "/v1/morphs"}) {
+      Post(path, [this](const auto& request, auto& response, const auto& reader) {
+        answer_upload(request, response, reader);
+      });
+    }
     set_error_handler([](const auto&, auto& response) {
       explain(response);
       return HandlerResponse::Handled;
@@ -234,7 +237,7 @@ private:
   }
 
   bool refuse_early(const httplib::Request& request, httplib::Response& response) {
-    if (request.method != "POST" || request.path != "/v1/jobs") return false;
+    if (!api::is_upload(request.method, request.path)) return false;
     if (auto refusal = router_.refuse_early(plain_request(request))) {
       fill(*std::move(refusal), response);
       return true;
@@ -249,8 +252,7 @@ private:
 
   HandlerResponse answer_head(const httplib::Request& request, httplib::Response& response) {
     if (refuse_early(request, response)) return HandlerResponse::Handled;
-    if (request.method == "POST" && request.path == "/v1/jobs")
-      return HandlerResponse::Unhandled; // the body comes first
+    if (api::is_upload(request.method, request.path)) return HandlerResponse::Unhandled; // the body comes first
     if (const WebFile* file = web_file(request))
       send_web_file(*file, response);
     else

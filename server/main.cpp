@@ -69,20 +69,33 @@ void describe_serve(CLI::App& app, CommandLine& line) {
   add_settings(*serve, line.settings);
 }
 
+// What `run` and `morph` have in common.
+void describe_job(CLI::App& command, CommandLine& line) {
+  command.add_option("-o,--out", line.run.output, "the textured GLB")->required()->type_name("OUT.glb");
+  command.add_option("--report", line.run.report, "what was found, done and proved")->type_name("REPORT.json");
+  command.add_option("--preview", line.run.preview, "the model and its spheres, to look at")->type_name("PREVIEW.png");
+  command
+      .add_option("--attach", line.run.attachments,
+                  "a file that the model names or an image of a cube map; a directory stands for its files")
+      ->type_name("FILE");
+  command.add_option("--dump-stages", line.run.dump_stages, "write each stage as OBJ and PNG")->type_name("DIR");
+  command.add_option("--save-maps", line.run.save_maps, "write each map that was baked")->type_name("DIR");
+  add_options(command, line.run.options);
+}
+
 void describe_run(CLI::App& app, CommandLine& line) {
   CLI::App* run = app.add_subcommand("run", "process one file");
   run->add_option("input", line.run.input, "a model: GLB, glTF, Draco, OBJ, PLY, STL, or a zip of one with its files")
       ->required()
       ->type_name("IN");
-  run->add_option("-o,--out", line.run.output, "the textured GLB")->required()->type_name("OUT.glb");
-  run->add_option("--report", line.run.report, "what was found, done and proved")->type_name("REPORT.json");
-  run->add_option("--preview", line.run.preview, "the model and its spheres, to look at")->type_name("PREVIEW.png");
-  run->add_option("--attach", line.run.attachments,
-                  "a file that the model names or an image of a cube map; a directory stands for its files")
-      ->type_name("FILE");
-  run->add_option("--dump-stages", line.run.dump_stages, "write each stage as OBJ and PNG")->type_name("DIR");
-  run->add_option("--save-maps", line.run.save_maps, "write each map that was baked")->type_name("DIR");
-  add_options(*run, line.run.options);
+  describe_job(*run, line);
+}
+
+void describe_morph(CLI::App& app, CommandLine& line) {
+  CLI::App* morph = app.add_subcommand("morph", "one mesh that morphs from a model to another");
+  morph->add_option("a", line.run.input, "the model to begin with")->required()->type_name("A");
+  morph->add_option("b", line.run.second, "the model to become")->required()->type_name("B");
+  describe_job(*morph, line);
 }
 
 int execute(const CLI::App& app, const CommandLine& line) {
@@ -98,6 +111,7 @@ int parse_and_execute(int argc, char** argv) {
   CommandLine line;
   describe_serve(app, line);
   describe_run(app, line);
+  describe_morph(app, line);
   try {
     app.parse(argc, argv);
     return execute(app, line);

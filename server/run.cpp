@@ -53,6 +53,10 @@ JobTask task_of(const RunArguments& arguments, const JobLimits& limits) {
   for (const auto& [name, value] : arguments.options) set_option(task.options, name, value);
   task.model = input_file("model", arguments.input);
   for (const fs::path& path : arguments.attachments) attach(path, task.files);
+  if (arguments.second) {
+    attach(*arguments.second, task.files);
+    task.options.morph_to = task.files.back().name;
+  }
   task.limits = limits;
   task.limits.niceness = 0;
   task.dump_stages = arguments.dump_stages.has_value();

@@ -45,7 +45,8 @@ struct Remade {
 // Takes a surface apart and puts the new one together.
 class Remesher {
 public:
-  Remesher(const RemeshSource& from, Report& report) : from_(from), report_(report), pool_(report.options.threads) {}
+  Remesher(const RemeshSource& from, const RemeshTarget& target, Report& report)
+      : from_(from), target_(target), report_(report), pool_(report.options.threads) {}
 
   void choose(const Limits& limits) {
     std::map<std::string, std::pair<std::uint64_t, std::uint32_t>> kept; // reason -> components, mesh of the first
@@ -153,14 +154,14 @@ private:
   // As many divisions as make its triangles about as large as those of the largest component.
   [[nodiscard]] std::uint32_t times_for(double part) const {
     const double fewer = std::round(-std::log2(part) / 2);
-    const double times = report_.options.remesh.times;
+    const double times = target_.times;
     return static_cast<std::uint32_t>(std::max(1.0, times - fewer));
   }
 
   void check_size(const Limits& limits) const {
     std::uint64_t triangles = 0;
     for (const std::uint32_t times : times_)
-      if (times > 0) triangles += remesh::triangles_of(report_.options.remesh.base, times);
+      if (times > 0) triangles += remesh::triangles_of(target_.base, times);
     if (triangles <= limits.max_triangles) return;
     throw Error(ErrorCode::too_large,
                 "the remesh would have " + std::to_string(triangles) + " triangles; the limit is " +
@@ -174,7 +175,7 @@ private:
     const auto points = std::span(from_.points).subspan(c.first_vertex, c.vertices);
     const remesh::SphereTree tree(points, mesh.triangles);
     Remade& out = remade_[i];
-    out.sphere = remesh::subdivided(report_.options.remesh.base, times_[i]);
+    out.sphere = remesh::subdivided(target_.base, times_[i]);
     remesh::fit_to_surface(out.sphere, {points, mesh.positions, mesh.triangles}, tree, pool_, progress);
     out.places.resize(out.sphere.points.size());
     pool_.for_blocks(out.places.size(), samples_a_block, [&](std::size_t begin, std::size_t end) {
@@ -320,6 +321,7 @@ private:
   }
 
   const RemeshSource& from_;
+  RemeshTarget target_;
   Report& report_;
   mesh::ThreadPool pool_;
   std::vector<std::uint32_t> times_;                     // by component; 0: it stays as it is
@@ -355,10 +357,11 @@ void note_texture_coordinates(const asset::Asset& asset, Report& report) {
 } // namespace
 
 std::optional<RemeshSource> resample(asset::Asset& asset, Surface& surface, std::vector<Vec3d>& points,
-                                     const Limits& limits, Progress& progress, Report& report) {
-  if (report.options.remesh.base == RemeshTarget::Base::none) return std::nullopt;
+                                     const RemeshTarget& target, const Limits& limits, Progress& progress,
+                                     Report& report) {
+  if (target.base == RemeshTarget::Base::none) return std::nullopt;
   RemeshSource from{std::move(asset), std::move(surface), std::move(points)};
-  Remesher remesher(from, report);
+  Remesher remesher(from, target, report);
   remesher.choose(limits);
   remesher.sample(progress);
   asset = remesher.make_asset();

@@ -20,16 +20,17 @@ struct RemeshSource {
   std::vector<Vec3d> points; // one per vertex of the surface
 };
 
-// With options.remesh: replaces each component that allows it by the polyhedron, its vertices taken from the surface
+// Replaces each component that allows it by the polyhedron, its vertices taken from the surface
 // where the sphere map has them, with every attribute interpolated; asset, surface and points are then as if the model
-// had come that way, and what follows need not know. Returns what they were; nothing, and changes nothing, without the
-// option.
+// had come that way, and what follows need not know. Returns what they were; nothing, and changes nothing, where the
+// target has no base. target: of the component with the largest area.
 //
 // A component stays as it is where it has caps (its sphere is not all surface) or several primitives; its reason is
 // noted. Triangles that only ride on a remeshed component are gone. Fills report.remesh. Throws Error: not_genus_zero
 // where no component can be remeshed, too_large where the triangles would be more than the limits allow.
 [[nodiscard]] std::optional<RemeshSource> resample(asset::Asset& asset, Surface& surface, std::vector<Vec3d>& points,
-                                                   const Limits& limits, Progress& progress, Report& report);
+                                                   const RemeshTarget& target, const Limits& limits, Progress& progress,
+                                                   Report& report);
 
 // The source's surface laid into the remesh's atlas (core/remesh/overlay.h), to bake from. surface, points: of the
 // remesh, as `cut` was made from them.

@@ -25,20 +25,6 @@ Attribute& float_attribute(asset::NewPrimitive& p, std::string_view name, std::u
 
 double angle_between(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
 
-// By vertex of the surface: the normals of the triangles around it, weighted by their angles there.
-std::vector<Vec3d> smooth_normals(const mesh::TriangleMesh& mesh) {
-  std::vector<Vec3d> sum(mesh.positions.size());
-  for (const mesh::Triangle& t : mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3d p(mesh.positions[t[k]]);
-      const Vec3d a = Vec3d(mesh.positions[t[(k + 1) % 3]]) - p, b = Vec3d(mesh.positions[t[(k + 2) % 3]]) - p;
-      const Vec3d n = cross(a, b);
-      if (const double length = norm(n); length > 0) sum[t[k]] += n * (angle_between(a, b) / length);
-    }
-  }
-  return sum;
-}
-
 Vec3f unit(const Vec3d& v) {
   const double length = norm(v);
   return length > 0 ? Vec3f(v * (1 / length)) : Vec3f{0, 0, 1};
@@ -84,6 +70,23 @@ void drop_tangent_targets(const asset::Primitive& input, asset::NewPrimitive& pr
 }
 
 } // namespace
+
+std::vector<Vec3d> smooth_normals(const mesh::TriangleMesh& mesh) {
+  std::vector<Vec3d> sum(mesh.positions.size());
+  for (const mesh::Triangle& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d p(mesh.positions[t[k]]);
+      const Vec3d a = Vec3d(mesh.positions[t[(k + 1) % 3]]) - p, b = Vec3d(mesh.positions[t[(k + 2) % 3]]) - p;
+      const Vec3d n = cross(a, b);
+      if (const double length = norm(n); length > 0) sum[t[k]] += n * (angle_between(a, b) / length);
+    }
+  }
+  for (Vec3d& n : sum) {
+    const double length = norm(n);
+    n = length > 0 ? n * (1 / length) : Vec3d{0, 0, 1};
+  }
+  return sum;
+}
 
 TangentFrames add_tangent_frames(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut,
                                  const std::vector<bool>& wanted, Delivery& delivery, Report& report) {

@@ -23,6 +23,10 @@ struct TangentFrames {
 TangentFrames add_tangent_frames(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut,
                                  const std::vector<bool>& wanted, Delivery& delivery, Report& report);
 
+// Unit, by vertex: the normals of the triangles around it, weighted by their angles there; (0, 0, 1) where there are
+// none.
+[[nodiscard]] std::vector<Vec3d> smooth_normals(const mesh::TriangleMesh& mesh);
+
 // Overwrites NORMAL and TANGENT of one vertex of the output.
 void set_frame(asset::NewPrimitive& primitive, std::size_t vertex, const texture::VertexFrame& frame);
 

@@ -83,6 +83,32 @@ TEST_CASE_FIXTURE(Desk, "the maps of a job are listed in its links and served un
   CHECK(ask({"GET", job(api::JobState::running) + "/maps/normal.png", {}, {}, {}}).status == 409);
 }
 
+TEST_CASE_FIXTURE(Desk,
+                  "two models that are posted are a job too: the second goes along as the file that an option names") {
+  const auto morph = [&](std::vector<api::Part> parts, api::Fields query = {}) {
+    return ask({"POST", "/v1/morphs", std::move(query), {}, std::move(parts)});
+  };
+  const auto response = morph({part("a", "cow.glb", "glTF...."), part("b", "horse.glb", "glTF....")},
+                              {{"features", "[[[0,0,1],[0,2,0.5]]]"}});
+  CHECK(response.status == 202);
+  const json body = body_of(response);
+  CHECK(response.header("Location") == "/v1/jobs/" + body["id"].get<std::string>());
+  CHECK(body["options"]["morph_to"] == "horse.glb");
+  CHECK(body["options"]["features"] == "[[[0,0,1],[0,2,0.5]]]");
+  REQUIRE(service.submissions.size() == 1);
+  CHECK(service.submissions[0].model.file_name == "cow.glb");
+  CHECK(service.submissions[0].files.at(0).file_name == "horse.glb");
+
+  CHECK(morph({part("a", "cow.glb", "glTF....")}).status == 400);
+  CHECK(morph({part("b", "cow.glb", "glTF....")}).status == 400);
+  CHECK(morph({part("model", "", "glTF....")}).status == 400);
+  CHECK(morph({part("a", "", "glTF...."), part("b", "b.glb", "not a model")}).status == 415);
+  CHECK(morph({part("a", "", "glTF...."), part("b", "b.glb", "glTF....")}, {{"morph_to", "c.glb"}}).status == 400);
+  CHECK(morph({part("a", "", "glTF...."), part("b", "b.glb", "glTF....")}, {{"features", "nose"}}).status == 422);
+  CHECK(ask("GET", "/v1/morphs").status == 405);
+  CHECK(ask("GET", "/v1/morphs").header("Allow") == "POST");
+}
+
 TEST_CASE_FIXTURE(Desk, "options come from the query and from the options part, and the query wins") {
   const auto response = post({part("model", "m.glb", "glTF...."),
                               part("options", "", R"({"texture_size": 256, "objective": "shape-preserving"})")},
