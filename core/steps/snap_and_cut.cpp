@@ -18,8 +18,12 @@
 namespace orbis {
 namespace {
 
-constexpr int most_turns = 8;
-constexpr double turn_angle = 0.02; // radians: about a hundred texels of a usual atlas
+constexpr int most_turns = 16;
+// Radians. The first turn moves a border by about a hundred texels of a usual atlas, the last to another side of the
+// sphere: what is crowded into one place, or drawn out into needles, gets away from the borders.
+constexpr double first_turn = 0.02;
+
+double angle_of(int turns) { return first_turn * turns * turns; }
 
 // Rodrigues' rotation about an axis that is in no special position to the cube.
 Vec3d turned(const Vec3d& p, double angle) {
@@ -107,7 +111,8 @@ private:
 
   void attempt(Progress& progress, mesh::ThreadPool& pool) {
     std::vector<Vec3d> rotated(points_.begin(), points_.end());
-    for (std::size_t v = 0; turns_ > 0 && v < rotated.size(); ++v) rotated[v] = turned(points_[v], turns_ * turn_angle);
+    const double angle = angle_of(turns_);
+    for (std::size_t v = 0; turns_ > 0 && v < rotated.size(); ++v) rotated[v] = turned(points_[v], angle);
     sphere::Snapped snapped = sphere::snap(rotated, mesh_.triangles);
     if (snapped.folded > 0)
       throw Error(ErrorCode::not_certified,
@@ -180,7 +185,7 @@ private:
       if (c.turns() == 0) continue;
       auto& [count, most] = turned[c.component().mesh];
       ++count;
-      most = std::max(most, c.turns() * turn_angle);
+      most = std::max(most, angle_of(c.turns()));
     }
     for (const auto& [mesh, what] : turned) {
       std::string message = what.first == 1 ? "the sphere was turned by " : "";
