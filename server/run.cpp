@@ -22,7 +22,7 @@ InputFile input_file(std::string name, const fs::path& path) {
   std::error_code error;
   const auto bytes = fs::file_size(path, error);
   if (error || !fs::is_regular_file(path, error)) {
-    throw Error(ErrorCode::internal, "'" + path.string() + "' is not a file that can be read");
+    throw Error(ErrorCode::missing_resource, "'" + path.string() + "' is not a file that can be read");
   }
   return {std::move(name), path, bytes};
 }

@@ -33,9 +33,13 @@ test_run_refuses_a_torus_with_2_and_the_problem_document() {
   [ ! -e "$work/run.glb" ] || fail "there is a result all the same"
 }
 
-test_run_ends_with_1_where_the_input_cannot_be_opened() {
+test_run_names_a_file_that_cannot_be_opened() {
   run_orbis "$work/no-such-file.glb"
-  expect "the exit status" "$EXIT" 1
+  expect "the exit status" "$EXIT" 2
+  expect "the problem" "$(jq --raw-output .type "$work/run.err")" /problems/missing-resource
+  expect_match "the detail" "$(jq --raw-output .detail "$work/run.err")" 'no-such-file.glb'
+  run_orbis "$models/egg.glb" --attach "$work/no-such-image.png"
+  expect "the exit status" "$EXIT" 2
 }
 
 test_run_dumps_its_stages() {
