@@ -53,12 +53,12 @@ private:
   std::vector<std::thread> workers_;
   std::mutex mutex_;
   std::condition_variable start_, done_;
-  const std::function<void(std::size_t)>* block_ = nullptr; // the current loop; null between loops
+  const std::function<void(std::size_t)>* block_ = nullptr; // the current loop, until all threads have left it
   std::size_t blocks_ = 0;
   std::atomic<std::size_t> next_{0};
-  std::size_t busy_ = 0;
-  std::uint64_t generation_ = 0;
-  bool stopping_ = false;
+  std::atomic<std::size_t> busy_{0};
+  std::atomic<std::uint64_t> generation_{0}; // of the current loop; written with the mutex held, for who sleeps
+  std::atomic<bool> stopping_{false};
 };
 
 } // namespace orbis::mesh
