@@ -71,9 +71,9 @@ Options parse_options(const Request& request, const Part* options_part) {
 // A first look at the model, so that what can never be read is refused at the door. The reader decides the rest.
 void check_format(const Part& model) {
   if (model.bytes == 0) refuse(Refusal::bad_request, "the model is empty");
-  if (recognise(read_spooled(model, format_head_bytes), model.bytes)) return;
-  throw Refused(make_problem(
-      Error(ErrorCode::unsupported_format, "the model is none of GLB, glTF JSON, Draco, OBJ, PLY, STL and zip")));
+  const std::string head = read_spooled(model, format_head_bytes);
+  if (recognise(head, model.bytes)) return;
+  throw Refused(make_problem(Error(ErrorCode::unsupported_format, unrecognised(head, model.bytes))));
 }
 
 // Options, the model (its name is empty where there is none), and the other parts as files.

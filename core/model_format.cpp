@@ -33,6 +33,20 @@ bool is_obj(std::string_view head) {
   return head.starts_with('#') || head.find("\n#") != std::string_view::npos;
 }
 
+constexpr std::uint64_t stl_header = 84, stl_triangle = 50; // bytes
+
+// Its count, if it is a binary STL; 0 where the head is too short.
+std::uint64_t binary_stl_triangles(std::string_view head) {
+  if (head.size() < stl_header) return 0;
+  std::uint64_t count = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    count |= static_cast<std::uint64_t>(static_cast<unsigned char>(head[80 + i])) << (8 * i);
+  }
+  return count;
+}
+
+std::uint64_t binary_stl_size(std::uint64_t triangles) { return stl_header + triangles * stl_triangle; }
+
 } // namespace
 
 std::string_view name_of(ModelFormat format) {
@@ -41,13 +55,8 @@ std::string_view name_of(ModelFormat format) {
 }
 
 bool is_binary_stl(std::string_view head, std::uint64_t size) {
-  constexpr std::uint64_t header = 84, triangle = 50;
-  if (head.size() < header) return false;
-  std::uint64_t count = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    count |= static_cast<std::uint64_t>(static_cast<unsigned char>(head[80 + i])) << (8 * i);
-  }
-  return count > 0 && size == header + count * triangle;
+  const std::uint64_t count = binary_stl_triangles(head);
+  return count > 0 && size == binary_stl_size(count);
 }
 
 std::optional<ModelFormat> recognise(std::string_view head, std::uint64_t size) {
@@ -63,6 +72,15 @@ std::optional<ModelFormat> recognise(std::string_view head, std::uint64_t size) 
   if (text.starts_with("solid") && is_text(head)) return ModelFormat::stl;
   if (is_obj(head)) return ModelFormat::obj;
   return std::nullopt;
+}
+
+std::string unrecognised(std::string_view head, std::uint64_t size) {
+  std::string text = "the model is none of GLB, glTF JSON, Draco, OBJ, PLY, STL and zip; convert it to one of these";
+  const std::uint64_t count = binary_stl_triangles(head);
+  if (count == 0 || is_text(head.substr(0, format_head_bytes))) return text;
+  text.append(". If it is a binary STL: its header counts ").append(std::to_string(count));
+  text.append(" triangles, which take ").append(std::to_string(binary_stl_size(count)));
+  return text.append(" bytes, but there are ").append(std::to_string(size));
 }
 
 } // namespace orbis

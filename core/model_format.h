@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace orbis {
@@ -19,6 +20,10 @@ inline constexpr std::uint64_t format_head_bytes = 4096;
 // none. Formats without a mark of their own are told by what must be in them: a binary STL by its size, an OBJ by the
 // first line that is neither empty nor a comment (where the head holds comments alone, it passes for an OBJ).
 [[nodiscard]] std::optional<ModelFormat> recognise(std::string_view head, std::uint64_t size);
+
+// What is said of a file that recognise() knows nothing of. A file with bytes that are no text may be a binary STL that
+// was cut off or added to: its size is then held against its count.
+[[nodiscard]] std::string unrecognised(std::string_view head, std::uint64_t size);
 
 // A binary STL is 80 bytes of anything, a count, and 50 bytes a triangle. Some begin with "solid" like the textual
 // ones, so that the size decides.

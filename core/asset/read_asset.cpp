@@ -51,10 +51,9 @@ void note_extensions(const Document& document, std::vector<Asset::Note>& notes) 
 }
 
 ModelFormat recognised(std::span<const std::byte> bytes) {
-  const auto format = recognise({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, bytes.size());
-  if (format) return *format;
-  throw Error(ErrorCode::unsupported_format,
-              "the model is none of GLB, glTF JSON, Draco, OBJ, PLY, STL and zip; convert it to one of these");
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (const auto format = recognise(text, text.size())) return *format;
+  throw Error(ErrorCode::unsupported_format, unrecognised(text, text.size()));
 }
 
 Asset read_gltf(std::span<const std::byte> bytes, const ModelFiles& files, const Limits& limits) {

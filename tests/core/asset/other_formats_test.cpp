@@ -278,4 +278,12 @@ TEST_CASE("formats are told by content") {
   CHECK_FALSE(recognise("value: 1\n", 9).has_value());
   CHECK_FALSE(recognise("\x01\x02\x03", 3).has_value());
   CHECK_FALSE(recognise("", 0).has_value());
+
+  std::string four_triangles(84, '\0');
+  four_triangles[80] = 4;
+  CHECK(recognise(four_triangles, 284) == ModelFormat::stl);
+  CHECK_FALSE(recognise(four_triangles, 250).has_value());
+  CHECK(unrecognised(four_triangles, 250).find("counts 4 triangles, which take 284 bytes, but there are 250") !=
+        std::string::npos);
+  CHECK(unrecognised(std::string(200, 'x'), 200).find("STL:") == std::string::npos);
 }
