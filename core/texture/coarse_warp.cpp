@@ -27,6 +27,7 @@ struct Symmetric {
 // What lies in one half of a cell.
 struct Content {
   double area = 0;                 // of the surface
+  double area_of_holes = 0;        // part of it
   Symmetric stretched, contracted; // means over the surface of C and of adj(C^-1), see metric_of
 };
 
@@ -58,6 +59,7 @@ std::size_t half_at(const FlatPoint& p, std::uint32_t cells) {
 void add(const PlaneMesh& mesh, std::size_t t, double area, Content& content) {
   const Symmetric c = metric_of(corners_of(mesh, t), mesh.references[t]);
   content.area += area;
+  if (mesh.references[t].closes_hole) content.area_of_holes += area;
   content.stretched.add(c, area);
   content.contracted.add(c, area / std::max(c.determinant(), 1e-300));
 }
@@ -106,7 +108,8 @@ PlaneReference reference_of(const Content& content, const std::array<FlatPoint, 
   const double four_areas = 2 * std::sqrt(c.determinant()) * std::abs(doubled_area(p[0], p[1], p[2]));
   const double sum = l0 + l1 + l2;
   return {{(sum - 2 * l0) / four_areas, (sum - 2 * l1) / four_areas, (sum - 2 * l2) / four_areas},
-          std::max(content.area, least_area)};
+          std::max(content.area, least_area),
+          2 * content.area_of_holes > content.area};
 }
 
 } // namespace

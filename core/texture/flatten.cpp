@@ -50,7 +50,8 @@ std::vector<ChartMesh> split(const FlatCharts& charts, std::span<const Vec3d> po
     ChartMesh& chart = out[charts.mesh.chart[t]];
     chart.mesh.triangles.push_back({number[a], number[b], number[c]});
     PlaneReference r = plane_reference(positions[a], positions[b], positions[c]);
-    if (charts.mesh.parent[t] >= delivered) r.area *= weight_of_hole;
+    r.closes_hole = charts.mesh.parent[t] >= delivered;
+    if (r.closes_hole) r.area *= weight_of_hole;
     total += r.area;
     chart.mesh.references.push_back(r);
   }
@@ -136,6 +137,7 @@ std::vector<std::size_t> sparse_charts(std::span<const ChartMesh> charts) {
   double total = 0;
   for (const ChartMesh& chart : charts)
     for (std::size_t t = 0; t < chart.mesh.triangles.size(); ++t) {
+      if (chart.mesh.references[t].closes_hole) continue;
       densities.push_back(density_of(chart.mesh, t));
       total += densities.back().area;
     }
@@ -147,7 +149,7 @@ std::vector<std::size_t> sparse_charts(std::span<const ChartMesh> charts) {
     double sparse = 0;
     for (std::size_t t = 0; t < charts[c].mesh.triangles.size(); ++t) {
       const Density d = density_of(charts[c].mesh, t);
-      if (d.texels_per_area < least) sparse += d.area;
+      if (!charts[c].mesh.references[t].closes_hole && d.texels_per_area < least) sparse += d.area;
     }
     if (sparse > sparse_part * total / static_cast<double>(charts.size())) out.push_back(c);
   }

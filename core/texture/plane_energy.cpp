@@ -14,7 +14,15 @@ constexpr int most_halvings = 6;
 constexpr double worthwhile = 0.01;          // of a star's energy
 constexpr double smallest_eigenvalue = 1e-3; // in units of the largest one
 
+constexpr int exponent_of_holes = 1;
+
+int exponent_of(const PlaneMesh& mesh, const PlaneReference& r) {
+  return r.closes_hole ? exponent_of_holes : mesh.exponent;
+}
+
+// n: 1 or a multiple of 4.
 double power(double c, int n) {
+  if (n == 1) return c;
   const double c4 = (c * c) * (c * c);
   double out = c4;
   for (int k = 4; k < n; k += 4) out *= c4;
@@ -45,6 +53,7 @@ struct Term {
   double cot_a, cot_b; // at a (opposite the edge p b) and at b (opposite p a)
   double fixed;        // 1/2 cot_p |a - b|^2
   double scale;        // 1 / (2 A)
+  int exponent;
 };
 
 double squared(double x, double y) { return x * x + y * y; }
@@ -54,14 +63,14 @@ struct Expansion {
 };
 
 // With the other corners fixed V is linear in p and D quadratic.
-Expansion expand(std::span<const Term> star, const FlatPoint& p, int exponent) {
+Expansion expand(std::span<const Term> star, const FlatPoint& p) {
   Expansion out;
   for (const Term& t : star) {
     const double ux = t.a.x - p.x, uy = t.a.y - p.y, vx = t.b.x - p.x, vy = t.b.y - p.y;
     const double D = 0.5 * (t.cot_b * squared(ux, uy) + t.cot_a * squared(vx, vy)) + t.fixed;
     const double Dx = -(t.cot_b * ux + t.cot_a * vx), Dy = -(t.cot_b * uy + t.cot_a * vy);
     const double Dxx = t.cot_a + t.cot_b;
-    const AreaFactor f(t.scale * (uy * vx - ux * vy), exponent);
+    const AreaFactor f(t.scale * (uy * vx - ux * vy), t.exponent);
     const double Vx = t.scale * (vy - uy), Vy = t.scale * (ux - vx);
     out.energy += D * f.h;
     out.gx += f.h * Dx + D * f.h1 * Vx;
@@ -74,13 +83,13 @@ Expansion expand(std::span<const Term> star, const FlatPoint& p, int exponent) {
 }
 
 // Infinite where a triangle is folded.
-double energy_at(std::span<const Term> star, const FlatPoint& p, int exponent) {
+double energy_at(std::span<const Term> star, const FlatPoint& p) {
   double sum = 0;
   for (const Term& t : star) {
     const double ux = t.a.x - p.x, uy = t.a.y - p.y, vx = t.b.x - p.x, vy = t.b.y - p.y;
     const double x = t.scale * (uy * vx - ux * vy);
     if (!(x > 0)) return std::numeric_limits<double>::infinity();
-    sum += (0.5 * (t.cot_b * squared(ux, uy) + t.cot_a * squared(vx, vy)) + t.fixed) * AreaFactor::at(x, exponent);
+    sum += (0.5 * (t.cot_b * squared(ux, uy) + t.cot_a * squared(vx, vy)) + t.fixed) * AreaFactor::at(x, t.exponent);
   }
   return sum;
 }
@@ -154,8 +163,8 @@ private:
       const PlaneReference& r = mesh_.references[c.corner / 3];
       const std::size_t k = c.corner % 3;
       const FlatPoint &a = mesh_.points[c.next], &b = mesh_.points[c.previous];
-      star_.push_back(
-          {a, b, r.cot[(k + 1) % 3], r.cot[(k + 2) % 3], 0.5 * r.cot[k] * squared(a.x - b.x, a.y - b.y), 0.5 / r.area});
+      star_.push_back({a, b, r.cot[(k + 1) % 3], r.cot[(k + 2) % 3], 0.5 * r.cot[k] * squared(a.x - b.x, a.y - b.y),
+                       0.5 / r.area, exponent_of(mesh_, r)});
     }
   }
 
@@ -163,14 +172,14 @@ private:
   double move(mesh::Index v) {
     gather(v);
     FlatPoint& p = mesh_.points[v];
-    const Expansion e = expand(star_, p, mesh_.exponent);
+    const Expansion e = expand(star_, p);
     const bool on_side = mesh_.fixed_x[v] || mesh_.fixed_y[v];
     const FlatPoint s = on_side ? along_side(e, mesh_.fixed_x[v], mesh_.fixed_y[v]) : descent(e);
     double t = step_to_fold(star_, p, s);
     if (!(t > 0)) return 0;
     for (int i = 0; i < most_halvings; ++i, t *= 0.5) {
       const FlatPoint q{p.x + t * s.x, p.y + t * s.y};
-      const double energy = energy_at(star_, q, mesh_.exponent);
+      const double energy = energy_at(star_, q);
       if (!(energy < e.energy)) continue;
       p = q;
       return (e.energy - energy) / e.energy;
@@ -179,16 +188,41 @@ private:
   }
 };
 
-// The energy of the whole mesh as a function of its scales along x and y: D = sx^2 Dx + sy^2 Dy and x = sx sy x0, so E
-// is a sum of moments of Dx and of Dy with the powers of x0 that h has.
+// The energy of triangles of one exponent as a function of the mesh's scales along x and y: D = sx^2 Dx + sy^2 Dy and
+// x = sx sy x0, so E is a sum of moments of Dx and of Dy with the powers of x0 that h has.
+class Moments {
+public:
+  // h = (x + 1/x)^n / (2^(n+1) x), by the binomial theorem.
+  explicit Moments(int exponent) : n_(exponent), factors_{std::ldexp(1.0, -n_ - 1)} {
+    for (int k = 1; k <= n_; ++k) factors_.push_back(factors_.back() * (n_ + 1 - k) / k);
+    of_x_.resize(factors_.size());
+    of_y_.resize(factors_.size());
+  }
+
+  void add(double x, double along_x, double along_y) {
+    double x_power = std::pow(x, n_ - 1);
+    for (std::size_t i = 0; i < factors_.size(); ++i, x_power /= x * x) {
+      of_x_[i] += along_x * x_power;
+      of_y_[i] += along_y * x_power;
+    }
+  }
+
+  [[nodiscard]] double energy(double sx, double sy) const {
+    const double s = sx * sy;
+    double s_power = std::pow(s, n_ - 1), sum = 0;
+    for (std::size_t i = 0; i < factors_.size(); ++i, s_power /= s * s)
+      sum += factors_[i] * s_power * (sx * sx * of_x_[i] + sy * sy * of_y_[i]);
+    return sum;
+  }
+
+private:
+  int n_;
+  std::vector<double> factors_, of_x_, of_y_; // by power of x: n - 1, n - 3, ...
+};
+
 class ScaledEnergy {
 public:
-  explicit ScaledEnergy(const PlaneMesh& mesh) : n_(mesh.exponent) {
-    // h = (x + 1/x)^n / (2^(n+1) x), by the binomial theorem.
-    factors_.push_back(std::ldexp(1.0, -n_ - 1));
-    for (int k = 1; k <= n_; ++k) factors_.push_back(factors_.back() * (n_ + 1 - k) / k);
-    moments_x_.resize(factors_.size());
-    moments_y_.resize(factors_.size());
+  explicit ScaledEnergy(const PlaneMesh& mesh) : surface_(mesh.exponent), holes_(exponent_of_holes) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const PlaneReference& r = mesh.references[t];
       std::array<FlatPoint, 3> p;
@@ -199,26 +233,16 @@ public:
         along_x += 0.5 * r.cot[k] * (a.x - b.x) * (a.x - b.x);
         along_y += 0.5 * r.cot[k] * (a.y - b.y) * (a.y - b.y);
       }
-      const double x = doubled_area(p[0], p[1], p[2]) / (2 * r.area), x2 = x * x;
-      double x_power = std::pow(x, n_ - 1);
-      for (std::size_t i = 0; i < factors_.size(); ++i, x_power /= x2) {
-        moments_x_[i] += along_x * x_power;
-        moments_y_[i] += along_y * x_power;
-      }
+      (r.closes_hole ? holes_ : surface_).add(doubled_area(p[0], p[1], p[2]) / (2 * r.area), along_x, along_y);
     }
   }
 
   [[nodiscard]] double operator()(double sx, double sy) const {
-    const double s = sx * sy;
-    double s_power = std::pow(s, n_ - 1), sum = 0;
-    for (std::size_t i = 0; i < factors_.size(); ++i, s_power /= s * s)
-      sum += factors_[i] * s_power * (sx * sx * moments_x_[i] + sy * sy * moments_y_[i]);
-    return sum;
+    return surface_.energy(sx, sy) + holes_.energy(sx, sy);
   }
 
 private:
-  int n_;
-  std::vector<double> factors_, moments_x_, moments_y_; // by power of x: n - 1, n - 3, ...
+  Moments surface_, holes_;
 };
 
 } // namespace

@@ -9,7 +9,9 @@
 //
 // D / V measures angles alone (Hormann and Greiner, MIPS, 2000); the second factor measures areas. With the exponent
 // n = 1 this is the symmetric Dirichlet energy (Smith and Schaefer 2015); higher ones weigh areas more, since an atlas
-// is for even texels (docs/atlas.md has the figures). E grows without bound at a fold: descent keeps orientation.
+// is for even texels (docs/atlas.md has the figures). Triangles that only close a hole have n = 1 whatever the others
+// have: they are to shrink, but not at the cost of the surface. E grows without bound at a fold: descent keeps
+// orientation.
 #pragma once
 
 #include <array>
@@ -20,10 +22,12 @@
 
 namespace orbis::texture {
 
-// Of one triangle: the cotangents of its angles on the surface, corner by corner, and its area there.
+// Of one triangle: the cotangents of its angles on the surface, corner by corner, its area there, and whether it is no
+// part of the surface and closes a hole.
 struct PlaneReference {
   std::array<double, 3> cot{};
   double area = 0;
+  bool closes_hole = false;
 };
 
 // Slivers are rounded off: a hundred-thousandth of the mean squared edge length is added to the squared lengths, so
@@ -36,7 +40,7 @@ struct PlaneMesh {
   std::vector<bool> fixed_x, fixed_y; // one per point
   std::vector<mesh::Triangle> triangles;
   std::vector<PlaneReference> references; // one per triangle, areas above 0
-  int exponent = 4;                       // n, a multiple of 4
+  int exponent = 4;                       // n of the surface's triangles, a multiple of 4
 };
 
 // Twice the area of a triangle as it is seen from outside the surface, with y down; positive where it is not folded.

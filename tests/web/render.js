@@ -36,8 +36,16 @@ function cameraFor(box) {
   return camera;
 }
 
+// As engines do: texels that are longer than wide are otherwise blurred to their length.
+function filterByDirection(root) {
+  root.traverse((node) => [node.material].flat().forEach((material) => Object.values(material ?? {}).forEach((value) => {
+    if (value?.isTexture) value.anisotropy = renderer.capabilities.getMaxAnisotropy();
+  })));
+}
+
 // RGBA rows from the top down.
 function draw(root, camera) {
+  filterByDirection(root);
   const scene = new THREE.Scene();
   scene.add(root, ...lights(camera));
   renderer.render(scene, camera);

@@ -36,9 +36,19 @@ function summary(document) {
   })
 }
 
+// The input as gltf-transform sees it; nothing where it needs an extension that gltf-transform does not know.
+async function originalOf(input, listener) {
+  try {
+    return await (await reader(listener)).read(input)
+  } catch (error) {
+    if (!error.message.startsWith('Missing required extension')) throw error
+    return undefined
+  }
+}
+
 export async function roundTrip(input, output) {
   const before = new Listener()
-  const original = await (await reader(before)).read(input)
+  const original = await originalOf(input, before)
   const listener = new Listener()
   const io = await reader(listener)
   const document = await io.read(output)
@@ -46,5 +56,5 @@ export async function roundTrip(input, output) {
   const news = listener.heard.filter((text) => !before.heard.includes(text))
   if (news.length > 0) throw new Error(news.join('; '))
   if (summary(again) !== summary(document)) throw new Error('it is not the same after being written and read again')
-  return expectSameSurface(original, document)
+  return original ? expectSameSurface(original, document) : 'the input itself cannot be read there'
 }

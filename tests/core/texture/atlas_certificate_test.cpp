@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include "atlas_of.h"
@@ -109,6 +110,23 @@ TEST_CASE("texels follow the surface: on a body with a long limb the first perce
   CHECK(quality.density_min > 0);
   CHECK(quality.seam_length < 7.7);
   CHECK(quality.l2_stretch < 1.3);
+}
+
+TEST_CASE("what closes a hole takes no texels from the surface around it") {
+  const SphereMesh sphere = subdivided(icosahedron(), 4);
+  mesh::TriangleMesh shell;
+  // A deep shell with a wide mouth.
+  for (const Vec3d& p : sphere.points) shell.positions.emplace_back(Vec3d{p.x, p.y, 3 * p.z});
+  const auto closes_hole = [&](const mesh::Triangle& t) { return sphere.points[t[0]].z > 0.1; };
+  shell.triangles = sphere.triangles;
+  std::ranges::stable_partition(shell.triangles, std::not_fn(closes_hole));
+  const auto delivered = static_cast<std::size_t>(std::ranges::count_if(shell.triangles, std::not_fn(closes_hole)));
+  const std::vector<GridPoint> grid = sphere.grid();
+  NoProgress progress;
+  const CutMesh mesh = make_atlas({shell.triangles, shell.triangles, grid, shell.positions, delivered}, 1024, progress);
+  const AtlasQuality quality = measure_atlas(mesh, shell);
+  CHECK(quality.density_p1 > 0.75 * quality.density_median);
+  CHECK(quality.l2_stretch < 1.1);
 }
 
 TEST_CASE("the sphere itself has the cube's seams, an even density and hardly any stretch") {
