@@ -32,7 +32,8 @@ Json links(const Job& job, const std::string& self) {
   if (job.state == JobState::succeeded) {
     for (const char* name : {"result", "report", "atlas.png", "preview.png"}) json[name] = self + "/" + name;
     json["maps"] = Json::object();
-    for (const std::string& map : job.maps) json["maps"][map] = self + "/maps/" + map;
+    const std::string maps = self + "/maps/";
+    for (const std::string& map : job.maps) json["maps"][map] = maps + map;
   }
   return json;
 }

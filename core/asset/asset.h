@@ -35,6 +35,7 @@ struct Attribute {
   std::uint32_t components = 3; // 1 to 4 (SCALAR, VEC2, VEC3, VEC4)
   Bytes data;
 
+  // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): components is never 0
   [[nodiscard]] std::size_t count() const { return data.size() / (components * size_of(type)); }
   // Component c of vertex v as a number: normalized integers as glTF 2.0 section 3.6.2.2 says, others as they are.
   [[nodiscard]] double get(std::size_t v, std::uint32_t c) const;

@@ -135,7 +135,7 @@ private:
   std::size_t mesh_holder(std::size_t n) {
     Json node = json_["nodes"][n], holder = Json::object();
     if (const Json* name = find(node, "name")) holder["name"] = *name;
-    for (const auto key : {"mesh", "skin", "weights"}) {
+    for (const char* key : {"mesh", "skin", "weights"}) {
       if (!node.contains(key)) continue;
       holder[key] = node[key];
       node.erase(key);

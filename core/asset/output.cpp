@@ -104,7 +104,8 @@ std::size_t Output::add_view(Bytes bytes, Target target, std::size_t stride) {
   Json& array = json["bufferViews"];
   if (!array.is_array()) array = Json::array();
   array.push_back(std::move(view));
-  views_.push_back(added_.emplace_back(std::move(bytes)));
+  added_.push_back(std::move(bytes));
+  views_.emplace_back(added_.back());
   return views_.size() - 1;
 }
 

@@ -60,7 +60,7 @@ public:
     apply(candidates_[0], row, above, [](int left, int, int) { return left; });
     apply(candidates_[1], row, above, [](int, int up, int) { return up; });
     apply(candidates_[2], row, above, [](int left, int up, int corner) { return paeth(left, up, corner); });
-    const auto best = std::min_element(candidates_.begin(), candidates_.end(),
+    const auto* best = std::min_element(candidates_.begin(), candidates_.end(),
                                        [](const Candidate& a, const Candidate& b) { return a.sum < b.sum; });
     to[0] = best->code;
     std::memcpy(to + 1, best->bytes.data(), best->bytes.size());

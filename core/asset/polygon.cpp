@@ -1,5 +1,6 @@
 #include "core/asset/polygon.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -73,13 +74,13 @@ private:
     const std::uint32_t before = at(i + left_.size() - 1), tip = at(i), after = at(i + 1);
     const Point &a = points_[before], &b = points_[tip], &c = points_[after];
     if (area(a, b, c) <= 0) return false;
-    for (const std::uint32_t other : left_) {
-      if (other == before || other == tip || other == after) continue;
+    const auto contains = [&](std::uint32_t other) {
+      if (other == before || other == tip || other == after) return false;
       const Point& p = points_[other];
-      if (p == a || p == b || p == c) continue; // where a cut leads to a hole and back
-      if (area(a, b, p) >= 0 && area(b, c, p) >= 0 && area(c, a, p) >= 0) return false;
-    }
-    return true;
+      if (p == a || p == b || p == c) return false; // where a cut leads to a hole and back
+      return area(a, b, p) >= 0 && area(b, c, p) >= 0 && area(c, a, p) >= 0;
+    };
+    return std::ranges::none_of(left_, contains);
   }
 
   std::vector<Point> points_;

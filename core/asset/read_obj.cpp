@@ -122,7 +122,7 @@ private:
     std::size_t count = 0;
     while (count < more.size() && !text_.at_end_of_line()) more[count++] = next_float();
     if (count >= 3 && lists_.colors.size() + 1 == lists_.positions.size()) {
-      lists_.colors.push_back({more[count - 3], more[count - 2], more[count - 1]});
+      lists_.colors.emplace_back(more[count - 3], more[count - 2], more[count - 1]);
     }
   }
 

@@ -131,8 +131,9 @@ std::optional<Primitive> PrimitiveReader::read(std::uint32_t mesh, std::uint32_t
 std::vector<Attribute> PrimitiveReader::read_attributes(const Json& names, const DracoMesh* compressed, bool is_target,
                                                         const std::string& place) {
   std::vector<Attribute> out;
+  const std::string inside = place + "/";
   for (const auto& [name, accessor] : names.get_ref<const Json::object_t&>()) {
-    auto attribute = read_attribute(name, accessor.get<std::size_t>(), compressed, is_target, place + "/" + name);
+    auto attribute = read_attribute(name, accessor.get<std::size_t>(), compressed, is_target, inside + name);
     if (attribute) out.push_back(std::move(*attribute));
   }
   return out;

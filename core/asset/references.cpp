@@ -43,7 +43,7 @@ private:
   void slots(J& parent, std::string_view key, Kind kind) const {
     each(parent, key, [&](J& item) { visit_(kind, item); });
   }
-  J* extension(J& parent, std::string_view name) const { return find_path(parent, "extensions", name); }
+  [[nodiscard]] J* extension(J& parent, std::string_view name) const { return find_path(parent, "extensions", name); }
   void extension_slot(J& parent, std::string_view name, std::string_view key, Kind kind) const {
     if (J* found = extension(parent, name)) slot(*found, key, kind);
   }

@@ -60,7 +60,7 @@ public:
   [[nodiscard]] std::string_view rest() const { return rest_; }
 
   // A word as a number, correctly rounded.
-  template <class T> T number(std::string_view word) const {
+  template <class T> [[nodiscard]] T number(std::string_view word) const {
     T value{};
     const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
@@ -84,7 +84,7 @@ public:
 private:
   void skip_space() { line_.remove_prefix(std::min(line_.find_first_not_of(" \t"), line_.size())); }
   // What is too small for its type is nothing; what is too large is no coordinate.
-  template <class T> T out_of_range(std::string_view word) const {
+  template <class T> [[nodiscard]] T out_of_range(std::string_view word) const {
     if constexpr (std::is_floating_point_v<T>) {
       if (word.find_first_of("eE") != std::string_view::npos && word.find('-', 1) != std::string_view::npos) return T{};
     }

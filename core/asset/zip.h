@@ -20,6 +20,6 @@ struct ZippedModel {
 // encrypted. What a member claims is held against what comes out, and against its checksum.
 // Throws Error: malformed, too_large, unsupported_feature (encrypted, another method, several models), missing_resource
 // (no model).
-[[nodiscard]] ZippedModel unzip_model(std::span<const std::byte> archive, const Limits& limits);
+[[nodiscard]] ZippedModel unzip_model(std::span<const std::byte> bytes, const Limits& limits);
 
 } // namespace orbis::asset

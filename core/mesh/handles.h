@@ -23,9 +23,9 @@ struct HandleCut {
 //
 // A loop may follow a boundary for a while, and what is cut with it then comes apart: the work ends there, before genus
 // 0 is reached perhaps, and is to be gone on with for each part.
-//   piece  the triangles of the piece, in ascending order
+//   triangles  those of the piece, in ascending order
 // O(rounds n log n); rounds are few, since handles far apart are cut in the same one.
-[[nodiscard]] HandleCut cut_handles(std::span<const Vec3f> positions, std::span<const std::uint32_t> piece,
+[[nodiscard]] HandleCut cut_handles(std::span<const Vec3f> positions, std::span<const std::uint32_t> triangles,
                                     Gluing& gluing);
 
 } // namespace orbis::mesh

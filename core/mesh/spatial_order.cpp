@@ -86,7 +86,7 @@ std::vector<Triangle> renumbered(std::span<const Triangle> triangles, std::span<
   pool.for_blocks(triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Triangle t{number[triangles[i][0]], number[triangles[i][1]], number[triangles[i][2]]};
-      std::ranges::rotate(t, std::ranges::min_element(t));
+      std::rotate(t.begin(), std::ranges::min_element(t), t.end());
       turned[i] = t;
     }
   });
