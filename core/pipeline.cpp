@@ -9,6 +9,7 @@
 #include "core/steps/dump.h"
 #include "core/steps/embed.h"
 #include "core/steps/levels.h"
+#include "core/steps/likeness.h"
 #include "core/steps/measure.h"
 #include "core/steps/morph.h"
 #include "core/steps/paint.h"
@@ -68,7 +69,7 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   dump_charts(dump, "3-charts.obj", sphere.cut);
 
   clock.report(Stage::levels, 0, 1);
-  std::vector<DetailLevel> levels = make_levels(asset, surface, sphere.cut, delivery, clock, report);
+  std::vector<DetailLevel> levels = make_levels(asset, surface, sphere.cut, clock, report);
 
   clock.report(Stage::bake, 0, 1);
   const SurfaceInAtlas shown{asset, surface, sphere.cut};
@@ -76,6 +77,7 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   if (source) overlay = source_in_atlas(*source, surface, points, sphere.cut, request.options.threads);
   const SurfaceInAtlas baked = source ? SurfaceInAtlas{source->asset, source->surface, overlay} : shown;
   BakedMaps maps = bake_maps(request, limits, baked, shown, delivery, levels, clock, report);
+  measure_likeness(asset, sphere.cut, delivery, levels, maps, clock, report);
 
   clock.report(Stage::encode, 0, 1);
   if (end) name_morph_target(*end, delivery);

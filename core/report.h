@@ -89,7 +89,7 @@ struct Report {
     double hausdorff_distance = 0;
     double texture_deviation = 0, texture_deviation_max = 0; // from the full surface's point of the same texel
     double outside = 0;                                      // per cent of its surface that samples outside the charts
-    double psnr = 0; // dB: a render with the full surface's normals from the atlas, against the full surface's
+    double psnr = 0;            // dB: a render as delivered, through its normal map, against the full surface's
     double screen_coverage = 0; // where the model fills less of the screen's height, it may stand for the level before
     std::uint64_t folded = 0;   // triangles that are not positively oriented, on the sphere or in the atlas
     double degree = 0;          // of the map to the sphere, that of the worst component

@@ -1,10 +1,11 @@
 #include "core/lod/render.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "core/texture/canvas.h"
+#include "core/lod/chart_map.h"
 #include "core/texture/raster.h"
 
 namespace orbis::lod {
@@ -32,7 +33,7 @@ struct Fragment {
   float b = 0, c = 0; // weights of the second and the third corner
 };
 
-// Positions as in FullSurface: within the unit sphere's half.
+// Positions within the ball of diameter 1 around 0.
 std::vector<Fragment> visible(std::span<const Vec3d> positions, std::span<const mesh::Triangle> triangles,
                               const View& view, std::uint32_t size) {
   std::vector<Fragment> fragments(std::size_t{size} * size);
@@ -77,53 +78,39 @@ Picture shade(const std::vector<Fragment>& fragments, const View& view, std::uin
   return picture;
 }
 
-template <class T> Vec3d blend(std::span<const T> at, const mesh::Triangle& t, const std::array<double, 3>& w) {
-  return at[t[0]] * w[0] + at[t[1]] * w[1] + at[t[2]] * w[2];
-}
-
 } // namespace
 
-Photographer::Photographer(const FullSurface& full, std::span<const Vec3d> normals, std::uint32_t size,
-                           mesh::ThreadPool& threads)
-    : full_(full), normals_(normals), size_(size), threads_(threads), map_(full, normals), pictures_(views) {
-  threads_.for_blocks(views, 1, [&](std::size_t view, std::size_t) { pictures_[view] = of_full(view); });
+NormalAt interpolated(std::span<const Vec3d> normals, std::span<const mesh::Triangle> triangles) {
+  return [=](std::uint32_t t, const std::array<double, 3>& w) {
+    return normals[triangles[t][0]] * w[0] + normals[triangles[t][1]] * w[1] + normals[triangles[t][2]] * w[2];
+  };
 }
 
-Picture Photographer::of_full(std::size_t view) const {
-  const View from = view_of(view);
-  const auto& triangles = full_.cut().triangles;
-  return shade(visible(full_.positions(), triangles, from, subpixels * size_), from, size_,
-               [&](std::uint32_t t, const std::array<double, 3>& w) { return blend(normals_, triangles[t], w); });
-}
-
-Picture Photographer::of(const Level& level, Shading shading, std::size_t view) const {
-  const View from = view_of(view);
-  const auto& triangles = level.mesh.triangles;
-  std::vector<Vec3d> positions;
-  positions.reserve(level.positions.size());
-  for (const Vec3f& p : level.positions) positions.push_back(full_.in_scale(p));
-  const std::vector<Fragment> fragments = visible(positions, triangles, from, subpixels * size_);
-  if (shading == Shading::own_normals) {
-    const std::vector<Vec3d> normals = texture::smooth_normals(level.mesh, positions);
-    return shade(fragments, from, size_, [&](std::uint32_t t, const std::array<double, 3>& w) {
-      return blend<Vec3d>(normals, triangles[t], w);
-    });
+Photographer::Photographer(Sitter full, std::uint32_t size, mesh::ThreadPool& threads)
+    : size_(size), threads_(threads), pictures_(views) {
+  Vec3d low(full.positions.front()), high = low;
+  for (const Vec3f& p : full.positions) {
+    low = {std::min(low.x, double{p.x}), std::min(low.y, double{p.y}), std::min(low.z, double{p.z})};
+    high = {std::max(high.x, double{p.x}), std::max(high.y, double{p.y}), std::max(high.z, double{p.z})};
   }
-  return shade(fragments, from, size_, [&](std::uint32_t t, const std::array<double, 3>& w) {
-    Uv uv{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      uv[0] += w[k] * level.mesh.vertices[triangles[t][k]].uv.x;
-      uv[1] += w[k] * level.mesh.vertices[triangles[t][k]].uv.y;
-    }
-    return map_.at(uv, level.mesh.page_of(t));
-  });
+  centre_ = low * 0.5 + high * 0.5;
+  scale_ = 1 / norm(high - low);
+  threads_.for_blocks(views, 1, [&](std::size_t view, std::size_t) { pictures_[view] = of(full, view); });
 }
 
-double Photographer::psnr(const Level& level, Shading shading) const {
+Picture Photographer::of(const Sitter& sitter, std::size_t view) const {
+  const View from = view_of(view);
+  std::vector<Vec3d> positions;
+  positions.reserve(sitter.positions.size());
+  for (const Vec3f& p : sitter.positions) positions.push_back((Vec3d(p) - centre_) * scale_);
+  return shade(visible(positions, sitter.triangles, from, subpixels * size_), from, size_, sitter.normal_at);
+}
+
+double Photographer::psnr(const Sitter& level) const {
   std::array<double, views> squares{};
   std::array<std::size_t, views> pixels{};
   threads_.for_blocks(views, 1, [&](std::size_t view, std::size_t) {
-    const Picture picture = of(level, shading, view);
+    const Picture picture = of(level, view);
     const Picture& original = pictures_[view];
     for (std::size_t i = 0; i < picture.light.size(); ++i) {
       if (picture.light[i] == background || original.light[i] == background) continue;

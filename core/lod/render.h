@@ -1,14 +1,15 @@
 // Pictures of a level beside those of the full surface, and how much they differ.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
-#include "core/lod/full_surface.h"
-#include "core/lod/normal_map.h"
-#include "core/lod/simplify.h"
 #include "core/mesh/thread_pool.h"
+#include "core/mesh/triangle_mesh.h"
+#include "core/vec3.h"
 
 namespace orbis::lod {
 
@@ -19,32 +20,41 @@ struct Picture {
   std::vector<float> light;
 };
 
-// How a level gets its normals.
-enum class Shading { normal_map, own_normals };
+// The normal that a renderer lights a point of a triangle with, at any length; called from several threads at once.
+using NormalAt = std::function<Vec3d(std::uint32_t triangle, const std::array<double, 3>& weights)>;
+
+// What is drawn.
+struct Sitter {
+  std::span<const Vec3f> positions;
+  std::span<const mesh::Triangle> triangles;
+  NormalAt normal_at;
+};
+
+// Normals that are given at the vertices, interpolated. Keeps references to both.
+[[nodiscard]] NormalAt interpolated(std::span<const Vec3d> normals, std::span<const mesh::Triangle> triangles);
 
 class Photographer {
 public:
   static constexpr std::size_t views = 6;
 
-  // normals: one per vertex of full.cut(), unit length: those that the full surface is shaded with. size: of a picture
-  // in pixels. All of it outlives the photographer.
-  Photographer(const FullSurface& full, std::span<const Vec3d> normals, std::uint32_t size, mesh::ThreadPool& threads);
+  // full: what the pictures are compared with, and what the frame is set for. size: of a picture in pixels. What is
+  // shown outlives the photographer.
+  Photographer(Sitter full, std::uint32_t size, mesh::ThreadPool& threads);
 
   // From six sides, along the axes of a cube that stands askew; without perspective, lit from over the shoulder. A
   // pixel is the mean of four subpixels; it shows the surface if all of them do.
-  [[nodiscard]] Picture of_full(std::size_t view) const;
-  [[nodiscard]] Picture of(const Level& level, Shading shading, std::size_t view) const;
+  [[nodiscard]] Picture of_full(std::size_t view) const { return pictures_[view]; }
+  [[nodiscard]] Picture of(const Sitter& sitter, std::size_t view) const;
 
   // Peak signal to noise ratio of all views together, in dB, over the pixels that show both surfaces. Infinite where
   // the pictures are the same.
-  [[nodiscard]] double psnr(const Level& level, Shading shading) const;
+  [[nodiscard]] double psnr(const Sitter& level) const;
 
 private:
-  const FullSurface& full_;
-  std::span<const Vec3d> normals_;
   std::uint32_t size_;
   mesh::ThreadPool& threads_;
-  NormalMap map_;
+  Vec3d centre_;                  // of the full surface's bounding box,
+  double scale_;                  // and 1 / its diagonal
   std::vector<Picture> pictures_; // of the full surface
 };
 

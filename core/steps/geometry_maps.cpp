@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/steps/shared_frames.h"
 #include "core/steps/tangent_frames.h"
 #include "core/texture/bake_occlusion.h"
+#include "core/texture/smooth_frames.h"
 
 namespace orbis {
 namespace {
@@ -45,8 +45,8 @@ void GeometryMaps::bake_normals() {
   if (!job_.wants(Map::normal) && !objects) return;
   SlotTextures textures = page_.shown(normal_);
   const DecodedImages images = decode(job_.asset, job_.limits, false, textures, job_.report);
-  const std::vector<bool> wanted = takes_normal_map(textures);
-  if (!any(wanted) && !objects) return;
+  const std::vector<bool> wanted = takes_normal_map(textures), of_levels = levels_take_normal_map(wanted);
+  if (!any(wanted) && !any(of_levels) && !objects) return;
 
   const CornerValues& values = page_.values();
   const std::vector<std::array<Vec3f, 3>> normals = values.normals();
@@ -61,41 +61,53 @@ void GeometryMaps::bake_normals() {
                                      page_.primitive_of()};
 
   if (objects) add_normals("object_normal", source, nullptr, false);
-  if (!any(wanted)) return;
-  const TangentFrames frames =
-      add_tangent_frames(job_.shown.asset, job_.shown.surface, job_.shown.cut, wanted, job_.delivery, job_.report);
-  const texture::FrameField field{&page_.delivered_map(), job_.shown.cut.triangles, frames.normals, frames.tangents};
-  const std::uint32_t number = add_normals("normal", source, &field, true);
-  for (std::size_t p = 0; p < wanted.size(); ++p) {
-    if (wanted[p]) job_.delivery.primitives[p].textures[TextureSlot::normal] = number;
+  if (any(wanted)) {
+    const TangentFrames frames = frames_of_full(wanted, job_.delivery, job_.report);
+    const std::uint32_t number = add_normals("normal", source, frames);
+    for (std::size_t p = 0; p < wanted.size(); ++p) {
+      if (wanted[p]) job_.delivery.primitives[p].textures[TextureSlot::normal] = number;
+    }
   }
-  if (!job_.levels.empty()) bake_normals_of_levels(source, wanted);
+  if (any(of_levels)) bake_normals_of_levels(source, of_levels);
 }
 
-// One map for all levels, in the frames of the coarsest. Of a primitive that has nothing left there, each level has
-// frames of its own under the full surface's map.
+TangentFrames GeometryMaps::frames_of_full(const std::vector<bool>& wanted, Delivery& delivery, Report& report) const {
+  return add_tangent_frames(job_.shown.asset, job_.shown.surface, job_.shown.cut, wanted, delivery, report);
+}
+
+texture::FrameField GeometryMaps::field_of(const TangentFrames& frames) const {
+  return {&page_.delivered_map(), job_.shown.cut.triangles, frames.normals, frames.tangents};
+}
+
+// One map for all levels, in frames that all of them can follow (smooth_frames.h).
 void GeometryMaps::bake_normals_of_levels(const texture::NormalSource& source, const std::vector<bool>& wanted) {
-  DetailLevel& coarsest = job_.levels.back();
-  std::vector<bool> shared = wanted, apart = wanted;
-  for (std::size_t p = 0; p < wanted.size(); ++p) {
-    shared[p] = wanted[p] && !coarsest.delivery.primitives[p].indices.empty();
-    apart[p] = wanted[p] && !shared[p];
-  }
+  const texture::CutMesh& cut = job_.shown.cut;
   Report already_noted; // of the full surface
+  Delivery full = job_.delivery;
+  TangentFrames frames = frames_of_full(wanted, full, already_noted);
+  const texture::SmoothFrames smooth(cut, page_.page(), field_of(frames));
   for (DetailLevel& level : job_.levels) {
-    add_tangent_frames(job_.shown.asset, job_.shown.surface, level.level.mesh, apart, level.delivery, already_noted);
+    add_tangent_frames(job_.shown.asset, job_.shown.surface, level.level.mesh, wanted, level.delivery, already_noted);
+    const texture::CutMesh& mesh = level.level.mesh;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      for (const mesh::Index v : mesh.triangles[t]) {
+        const OutputVertex o = level.delivery.of_cut_vertex[v];
+        if (wanted[o.primitive])
+          set_frame(level.delivery.primitives[o.primitive], o.vertex, smooth.at(mesh.chart[t], mesh.vertices[v].uv));
+      }
+    }
   }
-  if (!any(shared)) return;
-  const SharedFrames frames(job_.shown.asset, job_.shown.surface, job_.shown.cut, page_.page(), shared, coarsest,
-                            page_.map(), page_.pool());
-  for (DetailLevel& level : job_.levels.first(job_.levels.size() - 1)) {
-    frames.give_to(job_.shown.asset, job_.shown.surface, level.level.mesh, level.delivery);
+  for (const std::uint32_t t : page_.delivered_map().shown()) {
+    for (const mesh::Index v : cut.triangles[t]) {
+      const texture::VertexFrame frame = smooth.at(cut.chart[t], cut.vertices[v].uv);
+      frames.normals[v] = frame.normal;
+      frames.tangents[v] = frame.tangent;
+    }
   }
-  const texture::FrameField field = frames.field();
-  const std::uint32_t number = add_normals("normal_lods", source, &field, true);
+  const std::uint32_t number = add_normals("normal_lods", source, frames);
   for (DetailLevel& level : job_.levels) {
-    for (std::size_t p = 0; p < shared.size(); ++p) {
-      if (shared[p]) level.delivery.primitives[p].textures[TextureSlot::normal] = number;
+    for (std::size_t p = 0; p < wanted.size(); ++p) {
+      if (wanted[p]) level.delivery.primitives[p].textures[TextureSlot::normal] = number;
     }
   }
 }
@@ -115,6 +127,24 @@ std::vector<bool> GeometryMaps::takes_normal_map(const SlotTextures& textures) c
                                  pointer_to(job_.asset.primitives[p])});
   }
   return out;
+}
+
+// Those, and with maps=auto every primitive: what a level has fewer triangles for is then in the map.
+std::vector<bool> GeometryMaps::levels_take_normal_map(const std::vector<bool>& full) const {
+  if (job_.levels.empty()) return std::vector<bool>(full.size());
+  std::vector<bool> out = full;
+  for (std::size_t p = 0; p < out.size() && job_.options().maps.automatic; ++p) {
+    out[p] =
+        out[p] || (page_.shows(p) && !asset::names_texture(job_.asset, job_.asset.primitives[p], TextureSlot::normal) &&
+                   !asset::shares_tangents(job_.asset, job_.asset.primitives[p]));
+  }
+  return out;
+}
+
+std::uint32_t GeometryMaps::add_normals(const std::string& name, const texture::NormalSource& source,
+                                        const TangentFrames& frames) {
+  const texture::FrameField field = field_of(frames);
+  return add_normals(name, source, &field, true);
 }
 
 std::uint32_t GeometryMaps::add_normals(const std::string& name, const texture::NormalSource& source,

@@ -6,6 +6,7 @@
 
 #include "core/steps/occlusion_trees.h"
 #include "core/steps/page_baking.h"
+#include "core/steps/tangent_frames.h"
 #include "core/texture/bake_maps.h"
 
 namespace orbis {
@@ -25,7 +26,11 @@ public:
 
 private:
   [[nodiscard]] std::vector<bool> takes_normal_map(const SlotTextures& textures) const;
+  [[nodiscard]] std::vector<bool> levels_take_normal_map(const std::vector<bool>& full) const;
+  [[nodiscard]] TangentFrames frames_of_full(const std::vector<bool>& wanted, Delivery& delivery, Report& report) const;
+  [[nodiscard]] texture::FrameField field_of(const TangentFrames& frames) const;
   void bake_normals_of_levels(const texture::NormalSource& source, const std::vector<bool>& wanted);
+  std::uint32_t add_normals(const std::string& name, const texture::NormalSource& source, const TangentFrames& frames);
   std::uint32_t add_normals(const std::string& name, const texture::NormalSource& source,
                             const texture::FrameField* frames, bool shown);
 

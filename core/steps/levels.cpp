@@ -6,14 +6,9 @@
 
 #include "core/lod/distance.h"
 #include "core/lod/full_surface.h"
-#include "core/lod/render.h"
-#include "core/texture/canvas.h"
 
 namespace orbis {
 namespace {
-
-constexpr std::uint32_t picture_size = 512; // pixels
-constexpr double same_pictures = 99;        // dB
 
 std::vector<lod::Target> targets_of(const Options& options, const Surface& surface) {
   std::vector<lod::Target> targets;
@@ -49,24 +44,6 @@ void measure(const lod::Ruler& ruler, const lod::Level& level, Report::Level& ou
   out.texture_deviation = 100 * deviation.mean;
   out.texture_deviation_max = 100 * deviation.largest;
   out.outside = 100 * deviation.outside;
-}
-
-// The normals that the full surface is delivered with, at the vertices of the cut; smooth ones where it has none.
-std::vector<Vec3d> normals_of(const texture::CutMesh& cut, const Delivery& delivery, std::span<const Vec3d> positions) {
-  std::vector<Vec3d> normals = texture::smooth_normals(cut, positions);
-  std::vector<const asset::Attribute*> given;
-  for (const asset::NewPrimitive& primitive : delivery.primitives) {
-    const auto found = std::find_if(primitive.attributes.begin(), primitive.attributes.end(),
-                                    [](const asset::Attribute& a) { return a.name == "NORMAL"; });
-    given.push_back(found == primitive.attributes.end() ? nullptr : &*found);
-  }
-  for (std::size_t v = 0; v < normals.size(); ++v) {
-    const OutputVertex o = delivery.of_cut_vertex[v];
-    if (given[o.primitive] == nullptr) continue;
-    const asset::Attribute& normal = *given[o.primitive];
-    normals[v] = {normal.get(o.vertex, 0), normal.get(o.vertex, 1), normal.get(o.vertex, 2)};
-  }
-  return normals;
 }
 
 // What a target cost, in words.
@@ -127,7 +104,7 @@ std::string name_of_target(const Options& options, std::size_t i) {
 } // namespace
 
 std::vector<DetailLevel> make_levels(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut,
-                                     const Delivery& delivery, Progress& progress, Report& report) {
+                                     Progress& progress, Report& report) {
   std::vector<DetailLevel> out;
   if (report.options.lods.empty()) return out;
   const lod::FullSurface full(surface.mesh, surface.primitive_of, cut);
@@ -136,15 +113,12 @@ std::vector<DetailLevel> make_levels(const asset::Asset& asset, const Surface& s
 
   mesh::ThreadPool threads(report.options.threads);
   const lod::Ruler ruler(full, threads);
-  const std::vector<Vec3d> normals = normals_of(cut, delivery, full.positions());
-  const lod::Photographer photographer(full, normals, picture_size, threads);
   double coverage = 1;
   for (std::size_t i = 0; i < levels.size(); ++i) {
     progress.check();
     Report::Level& facts = report.levels.emplace_back();
     facts.target = name_of_target(report.options, i);
     measure(ruler, levels[i], facts);
-    facts.psnr = std::min(photographer.psnr(levels[i], lod::Shading::normal_map), same_pictures);
     facts.screen_coverage = coverage = std::min(coverage, coverage_of(facts.texture_deviation / 100));
     const lod::Concessions& c = levels[i].concessions;
     facts.turned_normals = c.turned_normals;

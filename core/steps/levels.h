@@ -21,11 +21,10 @@ struct DetailLevel {
 };
 
 // The levels that options.lods asks for; none where it is empty. Ratios count the triangles of the surface before it
-// was cut for the atlas. full: the full surface as it is delivered, for its normals. Fills report.levels but for what
-// is proved on the file, and notes what a target cost. Reports Stage::levels.
+// was cut for the atlas. Fills report.levels but for what is proved on the file and what is seen when all maps are
+// there (likeness.h), and notes what a target cost. Reports Stage::levels.
 [[nodiscard]] std::vector<DetailLevel> make_levels(const asset::Asset& asset, const Surface& surface,
-                                                   const texture::CutMesh& cut, const Delivery& full,
-                                                   Progress& progress, Report& report);
+                                                   const texture::CutMesh& cut, Progress& progress, Report& report);
 
 // Normals and tangents of the full surface and of all levels in 16 bits.
 void quantise(Delivery& full, std::span<DetailLevel> levels);

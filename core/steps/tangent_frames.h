@@ -7,7 +7,7 @@
 #include "core/report.h"
 #include "core/steps/delivery.h"
 #include "core/texture/atlas.h"
-#include "core/texture/bake_maps.h"
+#include "core/texture/smooth_frames.h"
 #include "core/texture/tangents.h"
 
 namespace orbis {

@@ -243,12 +243,4 @@ Image16 bake_positions(const TexelMap& map, std::span<const std::array<Vec3f, 3>
   return image;
 }
 
-VertexFrame frame_of(const FrameField& field, std::uint32_t texel_x, std::uint32_t texel_y, double x, double y) {
-  const Frame frame = FieldReader(field).at(texel_x, texel_y, x, y);
-  const Vec3d n = unit_or(frame.normal, {0, 0, 1});
-  const Vec3d t = unit_or(frame.tangent - n * dot(n, frame.tangent), cross(unit_or(frame.bitangent, {0, 1, 0}), n));
-  const float w = dot(cross(n, t), frame.bitangent) < 0 ? -1.0F : 1.0F;
-  return {Vec3f(n), {static_cast<float>(t.x), static_cast<float>(t.y), static_cast<float>(t.z), w}};
-}
-
 } // namespace orbis::texture

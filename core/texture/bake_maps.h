@@ -47,15 +47,6 @@ struct FrameField {
   std::span<const Tangent> tangents; // one per vertex
 };
 
-// What the field has at a place (x, y), in texels, of the triangle that a texel shows: unit normal, and a unit tangent
-// perpendicular to it.
-struct VertexFrame {
-  Vec3f normal;
-  Tangent tangent;
-};
-[[nodiscard]] VertexFrame frame_of(const FrameField& field, std::uint32_t texel_x, std::uint32_t texel_y, double x,
-                                   double y);
-
 // Normals as numbers in [0, 1], (n + 1) / 2 each: in the space of POSITION, or with `frames` in the tangent frame that
 // glTF renderers build at each pixel: N, T and B = w cross(N, T) at the vertices, interpolated, each brought back to
 // unit length, n ~ x T + y B + z N. Picture: Image (8 bits a channel) or Image16.

@@ -21,6 +21,7 @@
 #include "bench/read_surface.h"
 #include "core/asset/image_codec.h"
 #include "core/lod/distance.h"
+#include "core/lod/normal_map.h"
 #include "core/lod/render.h"
 #include "core/lod/simplify.h"
 #include "core/sphere/embedding.h"
@@ -91,12 +92,26 @@ Frame frame_of(const std::vector<lod::Picture>& row) {
           frame.top - std::min(margin, frame.top), std::min(frame.bottom + margin, size)};
 }
 
-void write_pictures(const std::string& path, const lod::Photographer& photographer,
+// A level twice: with the full surface's normals from the atlas, and with its own.
+struct Shown {
+  std::vector<Vec3d> own_normals;
+  lod::Sitter with_map, without_map;
+
+  Shown(const lod::Level& level, const lod::NormalMap& map)
+      : own_normals(
+            texture::smooth_normals(level.mesh, std::vector<Vec3d>(level.positions.begin(), level.positions.end()))),
+        with_map{level.positions, level.mesh.triangles, map.on(level.mesh)},
+        without_map{level.positions, level.mesh.triangles, lod::interpolated(own_normals, level.mesh.triangles)} {}
+};
+
+void write_pictures(const std::string& path, const lod::Photographer& photographer, const lod::NormalMap& map,
                     const std::vector<lod::Level>& levels, std::size_t view) {
   std::vector<lod::Picture> row{photographer.of_full(view)};
-  for (const lod::Level& level : levels)
-    for (const lod::Shading shading : {lod::Shading::normal_map, lod::Shading::own_normals})
-      row.push_back(photographer.of(level, shading, view));
+  for (const lod::Level& level : levels) {
+    const Shown shown(level, map);
+    row.push_back(photographer.of(shown.with_map, view));
+    row.push_back(photographer.of(shown.without_map, view));
+  }
   const Frame frame = frame_of(row);
   texture::Image image{frame.width() * static_cast<std::uint32_t>(row.size()), frame.height(), 3, {}};
   image.pixels.resize(std::size_t{image.width} * image.height * 3);
@@ -135,15 +150,19 @@ void measure(const std::string& path, const Arguments& arguments) {
   const lod::Ruler ruler(full, threads);
   const std::vector<Vec3d> positions(full.positions().begin(), full.positions().end());
   const std::vector<Vec3d> normals = texture::smooth_normals(cut, positions);
-  const lod::Photographer photographer(full, normals, 512, threads);
+  const lod::NormalMap map(full, normals);
+  std::vector<Vec3f> in_model;
+  for (const Vec3d& p : positions) in_model.push_back(full.in_model(p));
+  const lod::Photographer photographer({in_model, cut.triangles, lod::interpolated(normals, cut.triangles)}, 512,
+                                       threads);
   for (const lod::Level& level : levels) {
     const lod::Distances d = ruler.distances(level);
     const lod::TextureDeviation t = ruler.texture_deviation(level);
+    const Shown shown(level, map);
     std::printf("%-26s %7zu %6zu %6.0f ms  %.4f %.4f %.3f  %.4f %.3f  %.4f  %.1f %.1f\n", name.c_str(),
                 surface.triangles.size(), level.mesh.triangles.size(), simplification, 100 * d.to_full,
                 100 * d.from_full, 100 * d.hausdorff, 100 * t.mean, 100 * t.largest, 100 * t.outside,
-                photographer.psnr(level, lod::Shading::normal_map),
-                photographer.psnr(level, lod::Shading::own_normals));
+                photographer.psnr(shown.with_map), photographer.psnr(shown.without_map));
   }
   std::printf("measured in %.0f ms\n", milliseconds_since(start));
   for (const lod::Target& target : targets) {
@@ -155,7 +174,8 @@ void measure(const std::string& path, const Arguments& arguments) {
                 level.mesh.triangles.size(), time, 100 * d.to_full, 100 * d.from_full, 100 * d.hausdorff);
   }
   for (std::size_t view = 0; view < lod::Photographer::views && !arguments.pictures.empty(); ++view)
-    write_pictures(arguments.pictures + "/" + name + "-" + std::to_string(view) + ".jpg", photographer, levels, view);
+    write_pictures(arguments.pictures + "/" + name + "-" + std::to_string(view) + ".jpg", photographer, map, levels,
+                   view);
 }
 
 } // namespace

@@ -3,8 +3,9 @@
 //   npm install --prefix tests three@0.170.0   # once; not among the tests' packages
 //   node tests/bench/render.mjs BEFORE.glb AFTER.glb [PICTURE.png]
 //
-// Prints, for three views of 1024 x 1024 pixels, the PSNR of AFTER against BEFORE over the pixels that either covers (sRGB
-// bytes). PICTURE: both side by side in the first view, and their difference times eight.
+// Prints, for three views of 1024 x 1024 pixels, the PSNR of AFTER against BEFORE (sRGB bytes) over the pixels that either
+// covers, and over those that both cover wholly: the shading alone, without the outline. PICTURE: both side by side in the
+// first view, and their difference times eight.
 import {createServer} from 'node:http';
 import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {spawn} from 'node:child_process';
@@ -52,10 +53,11 @@ function pixels(scene, view) {
   context.drawImage(renderer.domElement, 0, 0);
   return context.getImageData(0, 0, size, size);
 }
-function psnr(a, b) {
+function psnr(a, b, inside) {
   let sum = 0, count = 0;
   for (let i = 0; i < a.data.length; i += 4) {
-    if (a.data[i + 3] === 0 && b.data[i + 3] === 0) continue;
+    const [first, second] = [a.data[i + 3], b.data[i + 3]];
+    if (inside ? first !== 255 || second !== 255 : first === 0 && second === 0) continue;
     for (let c = 0; c < 3; ++c) sum += (a.data[i + c] - b.data[i + c]) ** 2;
     count += 3;
   }
@@ -81,7 +83,7 @@ try {
   let picture;
   for (const view of [[0.6, 0.4, 1], [-1, 0.2, -0.4], [0.3, -0.7, -1]]) {
     const [a, b] = [pixels(before, view), pixels(after, view)];
-    psnrs.push(psnr(a, b));
+    psnrs.push([psnr(a, b, false), psnr(a, b, true)]);
     picture ??= side_by_side(a, b);
   }
   answer = {psnrs, picture};
@@ -131,6 +133,6 @@ function finish({error, psnrs, picture: url}) {
     process.exitCode = 1;
     return;
   }
-  console.log(psnrs.map(p => p.toFixed(2)).join(' '), 'dB');
+  console.log(psnrs.map(([all, inside]) => `${all.toFixed(2)} (inside ${inside.toFixed(2)})`).join('  '), 'dB');
   if (picture) writeFileSync(picture, Buffer.from(url.split(',')[1], 'base64'));
 }

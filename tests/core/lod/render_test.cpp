@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "core/lod/bumpy_worlds.h"
+#include "core/lod/normal_map.h"
+#include "core/lod/simplify.h"
 #include "core/texture/canvas.h"
 
 using namespace orbis;
@@ -14,8 +16,23 @@ namespace {
 struct Studio {
   explicit Studio(const lod_tests::World& world_, std::uint32_t threads_ = 1)
       : world(world_), full(world.full()), normals(texture::smooth_normals(world.cut, full.positions())),
-        threads(threads_), photographer(full, normals, 128, threads) {}
+        threads(threads_), map(full, normals), positions(positions_of(full)),
+        photographer({positions, world.cut.triangles, lod::interpolated(normals, world.cut.triangles)}, 128, threads) {}
 
+  static std::vector<Vec3f> positions_of(const lod::FullSurface& full) {
+    std::vector<Vec3f> out;
+    for (const Vec3d& p : full.positions()) out.push_back(full.in_model(p));
+    return out;
+  }
+
+  [[nodiscard]] double psnr_with_map(const lod::Level& level) const {
+    return photographer.psnr({level.positions, level.mesh.triangles, map.on(level.mesh)});
+  }
+  [[nodiscard]] double psnr_without_map(const lod::Level& level) const {
+    const std::vector<Vec3d> at(level.positions.begin(), level.positions.end());
+    const std::vector<Vec3d> own = texture::smooth_normals(level.mesh, at);
+    return photographer.psnr({level.positions, level.mesh.triangles, lod::interpolated(own, level.mesh.triangles)});
+  }
   [[nodiscard]] lod::Level level(std::uint64_t triangles) const {
     NoProgress progress;
     const std::vector<lod::Target> targets{{triangles, 0}};
@@ -26,6 +43,8 @@ struct Studio {
   lod::FullSurface full;
   std::vector<Vec3d> normals;
   mesh::ThreadPool threads;
+  lod::NormalMap map;
+  std::vector<Vec3f> positions;
   lod::Photographer photographer;
 };
 
@@ -54,12 +73,9 @@ TEST_CASE("more triangles look more like the full surface, and the normal map he
   const lod_tests::World world = lod_tests::bumpy_world(5, 2);
   const Studio studio(world);
   const lod::Level fine = studio.level(3000), coarse = studio.level(300);
-  const auto psnr = [&](const lod::Level& level, lod::Shading shading) {
-    return studio.photographer.psnr(level, shading);
-  };
-  CHECK(psnr(fine, lod::Shading::normal_map) > psnr(coarse, lod::Shading::normal_map));
-  CHECK(psnr(coarse, lod::Shading::normal_map) > psnr(coarse, lod::Shading::own_normals));
-  CHECK(psnr(coarse, lod::Shading::normal_map) > 20);
+  CHECK(studio.psnr_with_map(fine) > studio.psnr_with_map(coarse));
+  CHECK(studio.psnr_with_map(coarse) > studio.psnr_without_map(coarse));
+  CHECK(studio.psnr_with_map(coarse) > 20);
 }
 
 TEST_CASE("a picture shows the surface in its middle and nothing in its corners, from every side") {
@@ -78,6 +94,5 @@ TEST_CASE("the pictures' difference does not depend on the number of threads") {
   const lod_tests::World world = lod_tests::bumpy_world(3, 4);
   const Studio one(world, 1), three(world, 3);
   const lod::Level level = one.level(100);
-  CHECK(one.photographer.psnr(level, lod::Shading::normal_map) ==
-        three.photographer.psnr(level, lod::Shading::normal_map));
+  CHECK(one.psnr_with_map(level) == three.psnr_with_map(level));
 }

@@ -103,12 +103,27 @@ TEST_CASE("levels of detail are alternatives of the node, share its material, an
     CHECK(level.psnr > 15);
     CHECK(level.outside == 0);
     CHECK(level.degree == doctest::Approx(1));
-    CHECK(p.material == file.primitives[0].material);
+    CHECK(p.material == file.primitives[1].material); // the full surface's but for the normal map
     REQUIRE(p.find("_SPHERE") != nullptr);
     REQUIRE(p.find("TEXCOORD_0") != nullptr);
   }
   CHECK(result.report.levels[0].texture_deviation < result.report.levels[2].texture_deviation);
   CHECK(result.report.levels[0].mean_distance < result.report.levels[2].mean_distance);
+}
+
+TEST_CASE(
+    "the likeness of a level is that of its delivered normal map, on which all levels can be told from bare ones") {
+  const std::vector<std::byte> glb = glb_of(shapes::bumpy_sphere(5));
+  const Report mapped = run(glb, "0.3,0.05").report;
+  NoProgress progress;
+  Request request{glb, {}, {}};
+  set_option(request.options, "texture_size", "256");
+  set_option(request.options, "lods", "0.3,0.05");
+  set_option(request.options, "maps", "base_color");
+  const Report bare = process(request, {}, progress).report;
+  REQUIRE(mapped.levels.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) CHECK(mapped.levels[i].psnr > bare.levels[i].psnr + 2);
+  CHECK(mapped.levels[0].psnr > mapped.levels[1].psnr);
 }
 
 TEST_CASE("without levels the document has none") {
