@@ -156,7 +156,10 @@ Json level_json(const Report::Level& level) {
           {"turned_normals", level.turned_normals},
           {"reached", level.reached},
           {"outline_texels", level.outline_texels},
-          {"lost_components", level.lost_components}};
+          {"torn_edges", level.torn_edges},
+          {"opened_points", level.opened_points},
+          {"lost_components", level.lost_components},
+          {"lost_size", level.lost_size}};
 }
 
 Json remesh_json(const std::optional<Report::Remesh>& r) {

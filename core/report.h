@@ -95,8 +95,9 @@ struct Report {
     double degree = 0;          // of the map to the sphere, that of the worst component
     // What gave way for the target.
     bool turned_normals = false, reached = true;
-    double outline_texels = 0;
-    std::uint64_t lost_components = 0;
+    double outline_texels = 0; // how far a seam between materials has left its line in the atlas
+    std::uint64_t torn_edges = 0, opened_points = 0, lost_components = 0;
+    double lost_size = 0; // the diagonal of the largest component that was left out
   };
   std::vector<Level> levels;
   // What options.remesh did. Lengths are in per cent of the diagonal of the components that were remeshed.

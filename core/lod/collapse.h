@@ -10,34 +10,46 @@
 
 namespace orbis::lod {
 
-// What a collapse must respect beside the map, which never folds.
+// What a collapse must respect beside the map, which never folds, and the charts, which no triangle ever leaves.
 struct Constraints {
   bool keeps_normals = true; // no triangle turns by more than some 80 degrees at once
-  // How far, in the atlas, a seam may leave the outline of the full surface's charts. Rounding is always allowed.
+  // How far, in the atlas, a seam may leave its outline on the full surface. Rounding is always allowed.
   double outline_tolerance = 0;
-  // The same where the surface ends, at a hole or rim: there is no other side that would have to follow.
-  double border_tolerance = 0;
+  // Seams stay seams: one side shows what the other does. If not, the texture may be torn: a point may leave its place
+  // at a seam while its copies in other charts stay, and the last three points of a hole may become one edge.
+  bool keeps_seams = true;
+  // The rims of a cut change together, so that no gap opens.
+  bool keeps_joints = true;
 };
 
 struct Collapse {
   std::uint32_t removed = 0, kept = 0;
-  EdgeSides sides;            // at_a: wedges of the removed point, at_b: those of the kept one that take their place
-  Vec3d position;             // of the kept point
-  std::optional<Uv> moved_to; // its new place in the atlas (scaled); else it keeps its own
-  double cost = 0;            // Q there
+  EdgeSides sides;                     // at_a: wedges of the removed point, at_b: those of the kept one
+  std::array<std::uint32_t, 2> into{}; // what each wedge at_a becomes: the one at_b, or itself where it stays
+  Vec3d position;                      // of the kept point
+  std::optional<Uv> moved_to;          // its new place in the atlas (scaled); else it keeps its own
+  double cost = 0;                     // Q there
+
+  [[nodiscard]] bool tears() const { return into[0] == sides.at_a[0] || into[1] == sides.at_a[1]; }
 };
 
 class Collapser {
 public:
   Collapser(const FullSurface& full, WedgeMesh& mesh);
 
+  static constexpr std::uint32_t attempts = 9;
+
   // The attempts for an edge (a, b), best first by design: 0 where Q is least, if both ends may move; then with the
-  // place in the atlas of one end, the one of the smaller Q first. Nothing where there are fewer.
+  // place in the atlas of one end, the one of the smaller Q first; then those that tear. Nothing where there are fewer.
   [[nodiscard]] std::optional<Collapse> propose(std::uint32_t a, std::uint32_t b, std::uint32_t attempt) const;
 
   // Does it if the result is sound: the link condition holds; in the atlas (for float32) and on the sphere (on the
-  // grid) every changed triangle is positively oriented, decided exactly; and `constraints` hold.
-  bool perform(const Collapse& collapse, const Constraints& constraints);
+  // grid) every changed triangle is positively oriented, decided exactly; no triangle covers a place in the atlas that
+  // its chart did not; and `constraints` hold. Where the surface was cut apart, its other rims do the same, or none
+  // does. The points that are left, of none if it was not done.
+  [[nodiscard]] std::span<const std::uint32_t> perform(const Collapse& collapse);
+
+  Constraints constraints;
 
 private:
   struct Goal { // the kept point after the collapse
@@ -45,19 +57,40 @@ private:
     sphere::GridPoint sphere{};
     Vec2f uv; // of its wedge, where it has only one
     Place place;
-    bool has_moved = false;
+    bool has_moved = false;  // in the atlas, and so on the sphere
+    bool has_turned = false; // on the sphere alone
+    double drift = 0;        // of the seam from its outline
+  };
+  struct Step {
+    Collapse collapse;
+    Goal goal;
   };
 
-  [[nodiscard]] std::optional<Collapse> keep(std::uint32_t kept, std::uint32_t removed, const EdgeSides& sides) const;
+  // Whether a may become b.
+  [[nodiscard]] bool may_go(std::uint32_t a, std::uint32_t b, const EdgeSides& sides) const;
+  // stays: bit i: the removed point's wedge on side i keeps its place in the atlas.
+  [[nodiscard]] std::optional<Collapse> keep(std::uint32_t kept, std::uint32_t removed, const EdgeSides& sides,
+                                             unsigned stays) const;
   [[nodiscard]] std::optional<Collapse> move_both(std::uint32_t a, std::uint32_t b, const EdgeSides& sides) const;
+  [[nodiscard]] std::optional<Uv> rim_place(const DeviationQuadric& q, const Uv& middle, const EdgeSides& sides) const;
   [[nodiscard]] std::optional<Goal> goal_of(const Collapse& collapse) const;
-  [[nodiscard]] bool keeps_outline(const Collapse& collapse, const Constraints& constraints, double& drift) const;
-  [[nodiscard]] bool keeps_triangles(const Collapse& collapse, const Goal& goal, const Constraints& constraints) const;
+  [[nodiscard]] bool keeps_outline(const Collapse& collapse, double& drift) const;
+  [[nodiscard]] bool stays_inside(std::uint32_t wedge, const Vec2f& to) const;
+  [[nodiscard]] bool keeps_charts(const Collapse& collapse, const Goal& goal) const;
+  [[nodiscard]] bool keeps_triangles(const Collapse& collapse, const Goal& goal) const;
+  [[nodiscard]] std::optional<Goal> check(const Collapse& collapse);
+  [[nodiscard]] bool add_twins(const Collapse& collapse);
+  [[nodiscard]] std::optional<Step> twin_step(std::uint32_t twin, std::uint32_t joint);
+  [[nodiscard]] bool are_apart() const;
+  void apply(const Step& step);
+  void tear(const Collapse& collapse);
   [[nodiscard]] Uv scaled(const Vec2f& uv) const;
 
   const FullSurface& full_;
   WedgeMesh& mesh_;
   std::vector<std::int8_t> sign_; // by region: the orientation of its triangles in the atlas
+  std::vector<Step> steps_;       // of the collapse in work, with its twins
+  std::vector<std::uint32_t> kept_;
 };
 
 } // namespace orbis::lod

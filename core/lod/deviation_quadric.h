@@ -94,6 +94,17 @@ struct DeviationQuadric {
     return q;
   }
 
+  // w times the squared distance from the plane through b with the unit normal n, wherever in the atlas. It adds
+  // nothing to the weight that deviations are means by.
+  [[nodiscard]] static DeviationQuadric of_plane(const Vec3d& b, const Vec3d& n, double w) {
+    const double offset = dot(n, b);
+    DeviationQuadric q;
+    q.pp = {w * n.x * n.x, w * n.x * n.y, w * n.x * n.z, w * n.y * n.y, w * n.y * n.z, w * n.z * n.z};
+    q.gp = n * (-w * offset);
+    q.c = w * offset * offset;
+    return q;
+  }
+
   DeviationQuadric& operator+=(const DeviationQuadric& o) {
     for (std::size_t i = 0; i < pp.size(); ++i) pp[i] += o.pp[i];
     for (std::size_t i = 0; i < 2; ++i) {
@@ -113,8 +124,13 @@ struct DeviationQuadric {
                 2 * (gu[0] * u[0] + gu[1] * u[1])};
   }
 
-  // The u of the smallest min_p Q(p, u), held near `from`: on a flat, evenly mapped surface every u is as good.
-  [[nodiscard]] std::optional<Uv> best_place(const Uv& from) const {
+  // min_p Q(p, u) as a function of u: its gradient at a place and its Hessian (00, 01, 11), halved both.
+  struct Reduced {
+    Uv gradient{};
+    std::array<double, 3> hessian{};
+  };
+  // Held near `from` a little: on a flat, evenly mapped surface every u is as good. Nothing where no p is best.
+  [[nodiscard]] std::optional<Reduced> reduced(const Uv& from) const {
     constexpr double hold = 1e-3; // of the mean curvature of Q along u
     const std::optional<Symmetric3> i = inverse(pp);
     if (!i) return std::nullopt;
@@ -125,6 +141,15 @@ struct DeviationQuadric {
     const Vec3d p = -product(*i, gp + pu[0] * from[0] + pu[1] * from[1]);
     const double g0 = gu[0] + uu[0] * from[0] + uu[1] * from[1] + dot(pu[0], p);
     const double g1 = gu[1] + uu[1] * from[0] + uu[2] * from[1] + dot(pu[1], p);
+    return Reduced{{g0, g1}, {s0, s1, s2}};
+  }
+
+  // The u where that is smallest.
+  [[nodiscard]] std::optional<Uv> best_place(const Uv& from) const {
+    const std::optional<Reduced> r = reduced(from);
+    if (!r) return std::nullopt;
+    const auto& [s0, s1, s2] = r->hessian;
+    const auto& [g0, g1] = r->gradient;
     const double determinant = s0 * s2 - s1 * s1;
     if (!(determinant > 0)) return std::nullopt;
     return Uv{from[0] - (s2 * g0 - s1 * g1) / determinant, from[1] - (s0 * g1 - s1 * g0) / determinant};

@@ -76,11 +76,30 @@ Distances distances_between(std::span<const Vec3d> positions, std::span<const me
 }
 
 Ruler::Ruler(const FullSurface& full, mesh::ThreadPool& threads)
-    : full_(full), threads_(threads), tree_(full.positions(), full.cut().triangles) {}
+    : full_(full), threads_(threads), tree_(full.positions(), full.cut().triangles),
+      of_chart_(full.cut().charts.size()) {
+  for (std::uint32_t t = 0; t < full.cut().triangles.size(); ++t) of_chart_[full.cut().chart[t]].push_back(t);
+}
 
 Distances Ruler::distances(const Level& level) const {
   const std::vector<Vec3d> positions = scaled_positions(full_, level);
   return measure_both(threads_, positions, level.mesh.triangles, full_.positions(), full_.cut().triangles, tree_);
+}
+
+// Triangle by triangle: where a walk ends at a hole, or at another material, the chart may go on behind it.
+std::optional<Place> Ruler::search(std::uint32_t chart, const Uv& uv) const {
+  const auto& vertices = full_.cut().vertices;
+  for (const std::uint32_t t : of_chart_[chart]) {
+    const auto& [i, j, k] = full_.cut().triangles[t];
+    const Vec2f &a = vertices[i].uv, &b = vertices[j].uv, &c = vertices[k].uv;
+    const auto turn = [&](const Vec2f& p, const Vec2f& q) {
+      return (double{q.x} - p.x) * (uv[1] - p.y) - (uv[0] - p.x) * (double{q.y} - p.y);
+    };
+    const double ab = turn(a, b), bc = turn(b, c), ca = turn(c, a), whole = ab + bc + ca;
+    if (whole == 0 || std::min({ab / whole, bc / whole, ca / whole}) < 0) continue;
+    return Place{t, {bc / whole, ca / whole, ab / whole}};
+  }
+  return std::nullopt;
 }
 
 std::optional<Place> Ruler::find(const Level& level, std::uint32_t triangle, const Uv& uv) const {
@@ -99,7 +118,9 @@ std::optional<Place> Ruler::find(const Level& level, std::uint32_t triangle, con
   }
   const double length = std::hypot(middle[0] - uv[0], middle[1] - uv[1]);
   const double t = length > rounding ? rounding / length : 1;
-  return walk({uv[0] + t * (middle[0] - uv[0]), uv[1] + t * (middle[1] - uv[1])});
+  const Uv further{uv[0] + t * (middle[0] - uv[0]), uv[1] + t * (middle[1] - uv[1])};
+  if (std::optional<Place> place = walk(further)) return place;
+  return search(level.mesh.chart[triangle], further);
 }
 
 TextureDeviation Ruler::texture_deviation(const Level& level) const {

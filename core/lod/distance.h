@@ -42,10 +42,12 @@ public:
 
 private:
   [[nodiscard]] std::optional<Place> find(const Level& level, std::uint32_t triangle, const Uv& uv) const;
+  [[nodiscard]] std::optional<Place> search(std::uint32_t chart, const Uv& uv) const;
 
   const FullSurface& full_;
   mesh::ThreadPool& threads_;
   TriangleTree tree_;
+  std::vector<std::vector<std::uint32_t>> of_chart_; // chart -> triangles
 };
 
 } // namespace orbis::lod

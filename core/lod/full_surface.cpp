@@ -54,11 +54,10 @@ void FullSurface::scale_positions() {
 }
 
 void FullSurface::number_regions(std::span<const std::uint32_t> primitive_of) {
-  std::uint32_t primitives = 0;
-  for (const std::uint32_t p : primitive_of) primitives = std::max(primitives, p + 1);
+  for (const std::uint32_t p : primitive_of) primitives_ = std::max(primitives_, p + 1);
   regions_.reserve(cut_.triangles.size());
   for (std::size_t t = 0; t < cut_.triangles.size(); ++t)
-    regions_.push_back(cut_.chart[t] * primitives + primitive_of[cut_.parent[t]]);
+    regions_.push_back(cut_.chart[t] * primitives_ + primitive_of[cut_.parent[t]]);
 }
 
 void FullSurface::weigh() {
@@ -85,7 +84,7 @@ void FullSurface::weigh() {
 
 // Vertices of the welded surface on edges with one triangle, at whose place there is another such vertex.
 void FullSurface::find_joints() {
-  joint_.assign(surface_.positions.size(), false);
+  joint_.assign(surface_.positions.size(), none);
   std::vector<mesh::Triangle> points;
   points.reserve(cut_.triangles.size());
   for (const auto& [a, b, c] : cut_.triangles)
@@ -103,17 +102,26 @@ void FullSurface::find_joints() {
   };
   std::sort(rim.begin(), rim.end(),
             [&](mesh::Index a, mesh::Index b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+  std::uint32_t joints = 0;
   for (std::size_t i = 1; i < rim.size(); ++i) {
     if (rim[i] == rim[i - 1] || key(rim[i]) != key(rim[i - 1])) continue;
-    joint_[rim[i]] = joint_[rim[i - 1]] = true;
+    if (joint_[rim[i - 1]] == none) joint_[rim[i - 1]] = joints++;
+    joint_[rim[i]] = joint_[rim[i - 1]];
   }
 }
 
 bool FullSurface::is_joint(const texture::CutVertex& vertex) const {
   const mesh::Triangle& corners = surface_.triangles[vertex.triangle];
   bool is_joint = true;
-  for (std::size_t k = 0; k < 3; ++k) is_joint = is_joint && (vertex.barycentric[k] == 0 || joint_[corners[k]]);
+  for (std::size_t k = 0; k < 3; ++k) is_joint = is_joint && (vertex.barycentric[k] == 0 || joint_[corners[k]] != none);
   return is_joint;
+}
+
+std::uint32_t FullSurface::joint_of(const texture::CutVertex& vertex) const {
+  const mesh::Triangle& corners = surface_.triangles[vertex.triangle];
+  for (std::size_t k = 0; k < 3; ++k)
+    if (vertex.barycentric[k] == 1) return joint_[corners[k]];
+  return none;
 }
 
 Vec3d FullSurface::position(const Place& place) const {

@@ -46,6 +46,13 @@ public:
   // Whether a vertex of the cut lies where the surface was cut apart: on a rim that coincides with another, as along a
   // loop around a handle. Such points keep their place on every level, or gaps would open there.
   [[nodiscard]] bool is_joint(const texture::CutVertex& vertex) const;
+  // The number of the place in space where a vertex of such a rim lies, one for all that coincide; `none` elsewhere,
+  // and between two vertices of the surface.
+  [[nodiscard]] std::uint32_t joint_of(const texture::CutVertex& vertex) const;
+
+  // What a region's number says.
+  [[nodiscard]] std::uint32_t chart_of(std::uint32_t region) const { return region / primitives_; }
+  [[nodiscard]] std::uint32_t primitive_of(std::uint32_t region) const { return region % primitives_; }
 
   // Places on it by their uv.
   [[nodiscard]] const ChartMap& chart_map() const { return *chart_map_; }
@@ -67,7 +74,8 @@ private:
   std::vector<Weighing> weighings_;
   std::vector<std::uint32_t> regions_;
   std::optional<ChartMap> chart_map_; // made after the regions
-  std::vector<bool> joint_;           // vertex of the welded surface
+  std::vector<std::uint32_t> joint_;  // vertex of the welded surface -> number of its joint, or `none`
+  std::uint32_t primitives_ = 1;
   Vec3d centre_;
   double diagonal_ = 1, uv_scale_ = 1;
 };

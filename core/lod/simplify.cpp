@@ -3,16 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <queue>
 
 #include "core/lod/collapse.h"
+#include "core/lod/drop_components.h"
 #include "core/lod/extract.h"
 #include "core/lod/refine.h"
 
 namespace orbis::lod {
 namespace {
 
-constexpr std::uint32_t attempts = 3;
+constexpr double speck = 0.01; // of the diagonal: a component below that goes before a seam is torn
+constexpr double any_size = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t report_interval = 1U << 12U;
 
 // The next edge to collapse, valid as long as neither end has changed.
@@ -34,7 +37,6 @@ public:
   Simplifier(const FullSurface& full, double gutter, Progress& progress)
       : full_(full), gutter_(gutter), progress_(progress), mesh_(full), collapser_(full, mesh_) {
     first_count_ = mesh_.triangle_count;
-    constraints_.border_tolerance = 0.25 * gutter;
     fill_queue();
   }
 
@@ -43,10 +45,12 @@ public:
       if (step(target)) continue;
       if (stopped_by_bound_) break;
       // The queue ran dry. What was refused may be possible by now; if nothing was, something has to give way.
-      if (collapsed_since_filled_ == 0 && !concede()) break;
+      if (collapsed_since_filled_ == 0 && !(target.triangles > 0 && concede(target.triangles))) break;
       fill_queue();
     }
     concessions_.is_short = target.triangles > 0 && mesh_.triangle_count > target.triangles && !stopped_by_bound_;
+    for (const Point& p : mesh_.points)
+      if (p.is_alive) concessions_.outline = std::max(concessions_.outline, double{p.drift});
     Level level = extract(full_, mesh_);
     refine(full_, level);
     level.concessions = concessions_;
@@ -71,7 +75,7 @@ private:
 
   void push(std::uint32_t a, std::uint32_t b, std::uint32_t attempt) {
     if (a > b) std::swap(a, b);
-    for (; attempt < attempts; ++attempt) {
+    for (; attempt < Collapser::attempts; ++attempt) {
       const std::optional<Collapse> collapse = collapser_.propose(a, b, attempt);
       if (!collapse) continue;
       queue_.push({static_cast<float>(collapse->cost), a, b, versions(a, b), attempt});
@@ -101,14 +105,19 @@ private:
     stopped_by_bound_ = target.deviation > 0 && deviation > target.deviation * target.deviation;
     if (stopped_by_bound_) return false;
     queue_.pop();
-    if (!collapser_.perform(*collapse, constraints_)) {
+    const std::span<const std::uint32_t> kept = collapser_.perform(*collapse);
+    if (kept.empty()) {
       push(next.a, next.b, next.attempt + 1);
       return true;
     }
     largest_ = std::max(largest_, deviation);
     ++collapsed_since_filled_;
-    mesh_.neighbours_of(collapse->kept, ring_);
-    for (const std::uint32_t q : ring_) push(collapse->kept, q, 0);
+    if (collapse->tears()) ++concessions_.torn;
+    if (mesh_.points[collapse->removed].is_joint && !collapser_.constraints.keeps_joints) ++concessions_.opened;
+    for (const std::uint32_t p : kept) {
+      mesh_.neighbours_of(p, ring_);
+      for (const std::uint32_t q : ring_) push(p, q, 0);
+    }
     report();
     return true;
   }
@@ -122,50 +131,32 @@ private:
     return weight > 0 ? collapse.cost / weight : 0;
   }
 
-  bool concede() {
-    if (constraints_.keeps_normals) {
-      constraints_.keeps_normals = false;
+  // The next thing gives way; false where nothing is left.
+  bool concede(std::uint64_t triangles) {
+    Constraints& c = collapser_.constraints;
+    if (c.keeps_normals) {
+      c.keeps_normals = false;
       concessions_.turned_normals = true;
-    } else if (constraints_.outline_tolerance < gutter_) {
-      concessions_.outline = constraints_.outline_tolerance = constraints_.border_tolerance = gutter_;
-    } else if (constraints_.outline_tolerance < 1) {
-      concessions_.outline = constraints_.outline_tolerance = constraints_.border_tolerance = 1;
+    } else if (c.outline_tolerance < gutter_) {
+      c.outline_tolerance = gutter_;
+    } else if (c.outline_tolerance < 1) {
+      c.outline_tolerance = 1;
+    } else if (c.keeps_seams) {
+      if (!drop(triangles, speck)) c.keeps_seams = false;
+    } else if (c.keeps_joints) {
+      c.keeps_joints = false;
     } else {
-      return drop_component();
+      return drop(triangles, any_size);
     }
     return true;
   }
 
-  // Gives the smallest component up, by its area on the full surface. The last one stays.
-  bool drop_component() {
-    std::vector<std::uint32_t> of_point(mesh_.points.size(), none), ring, stack;
-    std::vector<double> area;
-    std::vector<std::uint32_t> first;
-    for (std::uint32_t p = 0; p < mesh_.points.size(); ++p) {
-      if (!mesh_.points[p].is_alive || of_point[p] != none) continue;
-      const auto component = static_cast<std::uint32_t>(area.size());
-      area.push_back(0);
-      first.push_back(p);
-      of_point[p] = component;
-      stack.assign(1, p);
-      while (!stack.empty()) {
-        const std::uint32_t q = stack.back();
-        stack.pop_back();
-        mesh_.for_each_corner(
-            q, [&](std::uint32_t c) { area.back() += mesh_.quadrics[mesh_.triangles[c / 3][c % 3]].weight; });
-        mesh_.neighbours_of(q, ring);
-        for (const std::uint32_t r : ring) {
-          if (of_point[r] != none) continue;
-          of_point[r] = component;
-          stack.push_back(r);
-        }
-      }
-    }
-    if (area.size() < 2) return false;
-    const auto smallest = std::min_element(area.begin(), area.end()) - area.begin();
-    concessions_.lost_triangles += mesh_.remove_component(first[static_cast<std::size_t>(smallest)]);
-    ++concessions_.lost_components;
-    return true;
+  bool drop(std::uint64_t triangles, double below) {
+    const Dropped dropped = drop_components(mesh_, triangles, below);
+    concessions_.lost_components += dropped.components;
+    concessions_.lost_triangles += dropped.triangles;
+    concessions_.largest_lost = std::max(concessions_.largest_lost, dropped.largest);
+    return dropped.components > 0;
   }
 
   void report() {
@@ -179,7 +170,6 @@ private:
   Progress& progress_;
   WedgeMesh mesh_;
   Collapser collapser_;
-  Constraints constraints_;
   Concessions concessions_;
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
   std::vector<std::uint32_t> ring_;

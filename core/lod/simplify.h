@@ -21,9 +21,12 @@ struct Target {
 // What had to give way for a target, in the order in which it does.
 struct Concessions {
   bool turned_normals = false; // triangles may turn by more than 80 degrees in one step
-  double outline = 0;          // how far, in the atlas, a seam may have left the outline of the full surface's charts
+  double outline = 0;          // how far, in the atlas, a seam between materials has left its line
+  std::uint64_t torn = 0;      // edges at which the two sides no longer show the same place of the atlas
+  std::uint64_t opened = 0;    // points of a cut's rim that went while those on its other rims stayed: a gap may show
   std::uint64_t lost_components = 0; // components left out, the smallest first
   std::uint64_t lost_triangles = 0;  // that those had
+  double largest_lost = 0;           // the diagonal of the largest one's bounding box, fraction of the model's
   bool is_short = false;             // the target was not reached for all that
 };
 
@@ -41,13 +44,13 @@ struct Level {
 // Edge collapses in the order of their texture deviation (deviation_quadric.h), one level after the other.
 //
 //   targets  from fine to coarse; a target that is already met gives the level before it again
-//   gutter   of the atlas, in the atlas' units: what lies around a chart shows the chart's colours that far. Where the
-//            surface ends, its rim may leave the full surface's outline by a quarter of it; seams may not, until a
-//            target cannot be met otherwise
+//   gutter   of the atlas, in the atlas' units: by so much a seam between two materials of a chart may leave its line
+//            before it may go anywhere
 //
 // On every level: triangles are positively oriented in the atlas and on the sphere, exactly, wherever those of the full
-// surface are; a component keeps its topology; copies of a point along a seam agree to the bit. Seams
-// are straightened only where that moves nothing, until a target cannot be met otherwise. No level is empty.
+// surface are; none covers a place in the atlas that the chart does not; copies of a point along a seam agree to the
+// bit. A component keeps its topology, and its seams their lines, until a target cannot be met otherwise: Concessions
+// says what gives way. No level is empty.
 //
 // O(n log n). One thread, deterministic. Reports Stage::levels; throws Error{canceled}.
 [[nodiscard]] std::vector<Level> simplify(const FullSurface& full, std::span<const Target> targets, double gutter,

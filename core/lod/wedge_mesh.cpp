@@ -8,6 +8,7 @@ namespace {
 // Where the map from the atlas stretches far more than elsewhere, it says little about its neighbourhood: beyond this
 // many times the mean stretch the slip counts less.
 constexpr double usual_stretch = 4;
+constexpr double wall_weight = 1; // of the squared distance from a rim's edge, times the edge's squared length
 
 DeviationQuadric quadric_of(const FullSurface& full, std::uint32_t t) {
   const auto& [ia, ib, ic] = full.cut().triangles[t];
@@ -41,6 +42,7 @@ WedgeMesh::WedgeMesh(const FullSurface& full) {
     const DeviationQuadric q = quadric_of(full, t);
     for (const std::uint32_t w : triangles[t]) quadrics[w] += q;
   }
+  wall_borders();
 }
 
 // The copies of a point that one region sees at one place in the atlas are one wedge: levels keep the seams of the
@@ -63,11 +65,17 @@ void WedgeMesh::make_wedges(const FullSurface& full) {
     points[vertex.point].position = full.positions()[v];
     points[vertex.point].sphere = vertex.sphere;
     points[vertex.point].is_joint = full.is_joint(vertex);
+    points[vertex.point].joint = full.joint_of(vertex);
     return made;
   };
   for (std::uint32_t t = 0; t < cut.triangles.size(); ++t) {
     const auto& [a, b, c] = cut.triangles[t];
     triangles.push_back({wedge_of(a, t), wedge_of(b, t), wedge_of(c, t)});
+  }
+  for (std::uint32_t p = 0; p < points.size(); ++p) {
+    if (points[p].joint == none) continue;
+    if (points[p].joint >= at_joint.size()) at_joint.resize(points[p].joint + 1);
+    at_joint[points[p].joint].push_back(p);
   }
   is_alive.assign(triangles.size(), true);
   triangle_count = triangles.size();
@@ -97,8 +105,82 @@ void WedgeMesh::classify() {
       seams += sides && sides->is_seam() ? 1 : 0;
     }
     if (seams == 0 && is_regular && !points[p].is_joint) continue;
-    points[p].kind = seams == 2 && is_regular && !points[p].is_joint ? PointKind::seam : PointKind::fixed;
+    const bool may_go = !points[p].is_joint || points[p].joint != none;
+    points[p].kind = seams == 2 && is_regular && may_go ? PointKind::seam : PointKind::fixed;
   }
+}
+
+// Where the surface ends nothing but its rim says where: planes through its edges, across the surface (Garland and
+// Heckbert 1997, section 6).
+void WedgeMesh::wall_borders() {
+  std::vector<std::uint32_t> ring;
+  for (std::uint32_t p = 0; p < points.size(); ++p) {
+    if (points[p].kind == PointKind::interior) continue;
+    neighbours_of(p, ring);
+    for (const std::uint32_t q : ring) {
+      if (q < p) continue;
+      const std::optional<EdgeSides> sides = sides_of(p, q);
+      if (!sides || !sides->is_border()) continue;
+      const mesh::Triangle& t = triangles[sides->triangle[0]];
+      const Vec3d a = points[wedges[t[0]].point].position;
+      const Vec3d normal = cross(points[wedges[t[1]].point].position - a, points[wedges[t[2]].point].position - a);
+      const Vec3d edge = points[q].position - points[p].position, across = cross(edge, normal);
+      const double length = norm(across);
+      if (!(length > 0)) continue;
+      const auto wall =
+          DeviationQuadric::of_plane(points[p].position, across * (1 / length), wall_weight * squared_norm(edge));
+      quadrics[sides->at_a[0]] += wall;
+      quadrics[sides->at_b[0]] += wall;
+    }
+  }
+}
+
+bool WedgeMesh::is_on_border(std::uint32_t point) const {
+  if (points[point].kind == PointKind::interior) return false;
+  std::vector<std::uint32_t> ring;
+  neighbours_of(point, ring);
+  return std::any_of(ring.begin(), ring.end(), [&](std::uint32_t q) {
+    const std::optional<EdgeSides> sides = sides_of(point, q);
+    return sides && sides->is_border();
+  });
+}
+
+bool WedgeMesh::is_between_joints(std::uint32_t point) const {
+  std::vector<std::uint32_t> ring;
+  neighbours_of(point, ring);
+  return std::all_of(ring.begin(), ring.end(), [&](std::uint32_t q) {
+    if (points[q].joint != none) return true;
+    const std::optional<EdgeSides> sides = sides_of(point, q);
+    return !sides || !sides->is_border();
+  });
+}
+
+WedgeMesh::Outline WedgeMesh::outline_at(const FullSurface& full, std::uint32_t wedge) const {
+  const std::uint32_t point = wedges[wedge].point, chart = full.chart_of(wedges[wedge].region);
+  // Whether a triangle of the chart has the edge from here to `other` on its other side: as its `k`-th after this.
+  const auto is_continued = [&](std::uint32_t other, std::uint32_t k) {
+    bool found = false;
+    for_each_corner(point, [&](std::uint32_t c) {
+      const std::uint32_t own = triangles[c / 3][c % 3], x = triangles[c / 3][(c % 3 + k) % 3];
+      found = found || (wedges[x].point == wedges[other].point && wedges[x].uv == wedges[other].uv &&
+                        wedges[own].uv == wedges[wedge].uv && full.chart_of(wedges[own].region) == chart);
+    });
+    return found;
+  };
+  Outline out;
+  for_each_corner(point, [&](std::uint32_t c) {
+    if (triangles[c / 3][c % 3] != wedge) return;
+    const std::uint32_t next = triangles[c / 3][(c % 3 + 1) % 3], last = triangles[c / 3][(c % 3 + 2) % 3];
+    if (!is_continued(next, 2)) {
+      out.behind = wedges[next].uv;
+      ++out.edges;
+    }
+    if (!is_continued(last, 1)) {
+      out.before = wedges[last].uv;
+      ++out.edges;
+    }
+  });
+  return out;
 }
 
 std::optional<EdgeSides> WedgeMesh::sides_of(std::uint32_t a, std::uint32_t b) const {
@@ -136,7 +218,7 @@ void WedgeMesh::neighbours_of(std::uint32_t point, std::vector<std::uint32_t>& o
   });
 }
 
-bool WedgeMesh::link_condition(std::uint32_t a, std::uint32_t b, const EdgeSides& sides) {
+bool WedgeMesh::link_condition(std::uint32_t a, std::uint32_t b, const EdgeSides& sides, bool closes_holes) {
   marks_ += 2;
   std::uint32_t around_a = 0, around_b = 0, common = 0;
   const auto for_each_neighbour = [&](std::uint32_t p, auto visit) {
@@ -154,16 +236,31 @@ bool WedgeMesh::link_condition(std::uint32_t a, std::uint32_t b, const EdgeSides
     mark_[q] = marks_;
   });
   // Two neighbours each at a border's edge: a triangle by itself. Three each at an inner edge: a tetrahedron.
-  return sides.is_border() ? common == 1 && around_a + around_b > 4 : common == 2 && around_a + around_b > 6;
+  if (!sides.is_border()) return common == 2 && around_a + around_b > 6 && !(is_on_border(a) && is_on_border(b));
+  if (common == 1) return around_a + around_b > 4;
+  return closes_holes && common == 2 && around_a + around_b > 6 && is_hole_of_three(a, b, sides);
 }
 
-void WedgeMesh::contract(std::uint32_t removed, std::uint32_t kept, const EdgeSides& removed_to_kept) {
-  for (const std::uint32_t t : removed_to_kept.triangle) is_alive[t] = false;
-  triangle_count -= removed_to_kept.is_border() ? 1 : 2;
-  const auto& from = removed_to_kept.at_a;
-  const auto& to = removed_to_kept.at_b;
-  quadrics[to[0]] += quadrics[from[0]];
-  if (from[1] != from[0]) quadrics[to[1]] += quadrics[from[1]];
+// Whether the border's edge (a, b) and two more close a ring.
+bool WedgeMesh::is_hole_of_three(std::uint32_t a, std::uint32_t b, const EdgeSides& sides) const {
+  std::vector<std::uint32_t> ring;
+  neighbours_of(a, ring);
+  return std::any_of(ring.begin(), ring.end(), [&](std::uint32_t c) {
+    if (c == b || std::any_of(triangles[sides.triangle[0]].begin(), triangles[sides.triangle[0]].end(),
+                              [&](std::uint32_t w) { return wedges[w].point == c; }))
+      return false;
+    const std::optional<EdgeSides> ac = sides_of(a, c), bc = sides_of(b, c);
+    return ac && bc && ac->is_border() && bc->is_border();
+  });
+}
+
+void WedgeMesh::contract(std::uint32_t removed, std::uint32_t kept, const EdgeSides& sides,
+                         const std::array<std::uint32_t, 2>& into) {
+  for (const std::uint32_t t : sides.triangle) is_alive[t] = false;
+  triangle_count -= sides.is_border() ? 1 : 2;
+  const auto& from = sides.at_a;
+  for (std::size_t i = 0; i < 2; ++i)
+    if (into[i] != from[i] && (i == 0 || from[1] != from[0])) quadrics[into[i]] += quadrics[from[i]];
 
   // The kept point's list: its own corners and those that it takes over, without the dead.
   std::uint32_t* link = &points[kept].first_corner;
@@ -173,9 +270,10 @@ void WedgeMesh::contract(std::uint32_t removed, std::uint32_t kept, const EdgeSi
       if (is_alive[c / 3]) {
         std::uint32_t& wedge = triangles[c / 3][c % 3];
         if (wedge == from[0])
-          wedge = to[0];
+          wedge = into[0];
         else if (wedge == from[1])
-          wedge = to[1];
+          wedge = into[1];
+        wedges[wedge].point = kept;
         *link = c;
         link = &next_corner_[c];
       }

@@ -31,7 +31,8 @@ struct Point {
   PointKind kind = PointKind::interior;
   float drift = 0; // how far seams through here have left the outline of the full surface's charts, in the atlas
   bool is_alive = true;
-  bool is_joint = false; // never moves: FullSurface::is_joint
+  bool is_joint = false;      // never moves: FullSurface::is_joint
+  std::uint32_t joint = none; // FullSurface::joint_of
 };
 
 // The wedges of an edge (a, b) on each of its two sides. Where the surface ends there is one side, named twice.
@@ -48,11 +49,12 @@ public:
 
   std::vector<Point> points;
   std::vector<Wedge> wedges;
-  std::vector<DeviationQuadric> quadrics; // one per wedge
-  std::vector<mesh::Triangle> triangles;  // wedges
-  std::vector<std::uint32_t> parent;      // triangle -> triangle of the welded surface
-  std::vector<bool> is_alive;             // by triangle
-  std::uint64_t triangle_count = 0;       // of those alive
+  std::vector<DeviationQuadric> quadrics;           // one per wedge
+  std::vector<mesh::Triangle> triangles;            // wedges
+  std::vector<std::uint32_t> parent;                // triangle -> triangle of the welded surface
+  std::vector<bool> is_alive;                       // by triangle
+  std::uint64_t triangle_count = 0;                 // of those alive
+  std::vector<std::vector<std::uint32_t>> at_joint; // joint -> the points there
 
   [[nodiscard]] std::uint32_t point_at(std::uint32_t corner) const {
     return wedges[triangles[corner / 3][corner % 3]].point;
@@ -67,12 +69,28 @@ public:
   // The points around a point, each once, in the order in which the triangles were listed.
   void neighbours_of(std::uint32_t point, std::vector<std::uint32_t>& out) const;
   // Link condition of Dey et al., Topology preserving edge contraction (1999): the ends have no neighbour in common but
-  // those of the edge's triangles; and more than the edge's own triangles, or two of a tetrahedron, would be left.
-  [[nodiscard]] bool link_condition(std::uint32_t a, std::uint32_t b, const EdgeSides& sides);
+  // those of the edge's triangles; no edge through the surface joins two points where it ends; and more than the edge's
+  // own triangles, or two of a tetrahedron, would be left. closes_holes: the edge of a hole of three may go too, so
+  // that the other two become one edge inside the surface.
+  [[nodiscard]] bool link_condition(std::uint32_t a, std::uint32_t b, const EdgeSides& sides, bool closes_holes);
+  [[nodiscard]] bool is_on_border(std::uint32_t point) const;
+  // Whether the points before and behind it on its rim are joints.
+  [[nodiscard]] bool is_between_joints(std::uint32_t point) const;
 
-  // Removes the triangles of the edge and hands the others around `removed` to `kept`; wedges of `removed` become those
-  // of `kept` as `sides` pairs them, their quadrics are added.
-  void contract(std::uint32_t removed, std::uint32_t kept, const EdgeSides& removed_to_kept);
+  // The way along the outline of its chart at a wedge: the place before and the place behind it, with the surface to
+  // the left where triangles are positively oriented in the atlas. What another region of the chart continues is no
+  // outline.
+  struct Outline {
+    std::size_t edges = 0; // 0: none passes; 2: one does; else they meet here
+    Vec2f before, behind;
+  };
+  [[nodiscard]] Outline outline_at(const FullSurface& full, std::uint32_t wedge) const;
+
+  // Removes the triangles of the edge and hands the others around `removed` to `kept`. sides.at_a are wedges of
+  // `removed`; each becomes the wedge of `kept` in `into`, quadrics added, or stays in the atlas where that names
+  // itself, as all further wedges of `removed` do.
+  void contract(std::uint32_t removed, std::uint32_t kept, const EdgeSides& sides,
+                const std::array<std::uint32_t, 2>& into);
 
   // Takes all triangles of the component that a point belongs to away; returns how many there were.
   std::uint64_t remove_component(std::uint32_t point);
@@ -81,6 +99,8 @@ private:
   void make_wedges(const FullSurface& full);
   void list_corners();
   void classify();
+  void wall_borders();
+  [[nodiscard]] bool is_hole_of_three(std::uint32_t a, std::uint32_t b, const EdgeSides& sides) const;
 
   std::vector<std::uint32_t> next_corner_;
   std::vector<std::uint32_t> mark_; // by point, for link_condition

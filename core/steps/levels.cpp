@@ -1,7 +1,9 @@
 #include "core/steps/levels.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "core/lod/distance.h"
@@ -47,19 +49,37 @@ void measure(const lod::Ruler& ruler, const lod::Level& level, Report::Level& ou
 }
 
 // What a target cost, in words.
-void note_concessions(const lod::Concessions& c, const std::string& where, Report& report) {
+void note_concessions(const Report::Level& level, const std::string& where, Report& report) {
   const auto note = [&](const char* code, const std::string& message) {
     report.notes.push_back({code, message, where});
   };
-  if (c.turned_normals)
+  const auto rounded = [](double value) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.3g", value);
+    return std::string(text.data());
+  };
+  if (level.turned_normals)
     note("lod-turned-normals", "some triangles were allowed to turn by more than 80 degrees at once");
-  if (c.outline > 0)
-    note("lod-outline", "seams had to leave the outlines of their charts: along them the level may show the gutter");
-  if (c.lost_components > 0)
-    note("lod-lost-components", std::to_string(c.lost_components) +
-                                    " components, the smallest, had to be left out to reach the number of triangles");
-  if (c.is_short)
-    note("lod-short", "no edge was left that could be collapsed: the level has more triangles than asked for");
+  if (level.outline_texels > 0)
+    note("lod-outline", "seams between materials had to leave their lines in the atlas by up to " +
+                            rounded(level.outline_texels) +
+                            " texels: along them one material shows the other's texels");
+  if (level.torn_edges > 0)
+    note(
+        "lod-torn",
+        std::to_string(level.torn_edges) +
+            " edges had to be torn in the atlas: a chart's corners, or a hole, need more triangles than the level has");
+  if (level.opened_points > 0)
+    note("lod-opened-cuts", std::to_string(level.opened_points) +
+                                " points of a cut's rim had to go while the other rim kept theirs: a gap may show");
+  if (level.lost_components > 0)
+    note("lod-lost-components",
+         std::to_string(level.lost_components) +
+             " components had to be left out, the smallest first; the largest of them measures " +
+             rounded(level.lost_size) + " % of the model's diagonal");
+  if (!level.reached)
+    note("lod-short", "the level has " + std::to_string(level.triangles) +
+                          " triangles, more than asked for: no edge is left that can be collapsed");
 }
 
 // The positions that were fitted take the place of those on the full surface.
@@ -123,9 +143,12 @@ std::vector<DetailLevel> make_levels(const asset::Asset& asset, const Surface& s
     const lod::Concessions& c = levels[i].concessions;
     facts.turned_normals = c.turned_normals;
     facts.outline_texels = c.outline * widest_page(cut);
+    facts.torn_edges = c.torn;
+    facts.opened_points = c.opened;
     facts.lost_components = c.lost_components;
+    facts.lost_size = 100 * c.largest_lost;
     facts.reached = !c.is_short;
-    note_concessions(c, "/levels/" + std::to_string(i), report);
+    note_concessions(facts, "/levels/" + std::to_string(i), report);
 
     DetailLevel& level = out.emplace_back(std::move(levels[i]), Delivery{});
     level.delivery = make_delivery(asset, surface, level.level.mesh, RiderPolicy::leave_out);

@@ -52,6 +52,24 @@ inline World bumpy_world(int subdivisions, std::uint32_t seed, std::uint32_t mat
   return world;
 }
 
+// Without the triangles of its cut around the north pole and around a place at the equator: a rim with corners, and
+// another one.
+inline World punctured(World world) {
+  texture::CutMesh& cut = world.cut;
+  std::size_t left = 0;
+  for (std::size_t t = 0; t < cut.triangles.size(); ++t) {
+    const Vec3d p = normalized(Vec3d(world.surface.positions[world.surface.triangles[cut.parent[t]][0]]));
+    if (p.z > 0.8 || p.x > 0.95) continue;
+    cut.triangles[left] = cut.triangles[t];
+    cut.parent[left] = cut.parent[t];
+    cut.chart[left++] = cut.chart[t];
+  }
+  cut.triangles.resize(left);
+  cut.parent.resize(left);
+  cut.chart.resize(left);
+  return world;
+}
+
 // Two worlds side by side, the second scaled and far enough away; one cut after the other.
 inline World pair_of(World a, const World& b, double scale) {
   const auto vertices = static_cast<mesh::Index>(a.surface.positions.size());

@@ -164,9 +164,44 @@ TEST_CASE("a target that is met already gives all triangles again, and none asks
   const World world = bumpy_world(3, 2);
   const std::vector<lod::Level> levels = levels_of(world, counts({100'000, 1}));
   CHECK(levels[0].mesh.triangles.size() == world.cut.triangles.size());
-  CHECK(levels[1].mesh.triangles.size() >= 4);
+  CHECK(levels[1].mesh.triangles.size() == 4);
   CHECK(levels[1].concessions.is_short);
   CHECK(certificate_of(levels[1]).valid);
+}
+
+TEST_CASE("four triangles are reached where charts have to give way, still without a fold") {
+  for (const std::uint32_t seed : {1U, 2U, 3U, 4U, 5U}) {
+    const World world = bumpy_world(3, seed, seed % 2 + 1);
+    const std::vector<lod::Level> levels = levels_of(world, counts({10, 4}));
+    for (const lod::Level& level : levels) {
+      CAPTURE(seed);
+      CHECK(level.mesh.triangles.size() <= (&level == &levels[0] ? 10U : 4U));
+      CHECK_FALSE(level.concessions.is_short);
+      const sphere::Certificate certificate = certificate_of(level);
+      CHECK_MESSAGE(certificate.valid, certificate.failure());
+      CHECK(std::all_of(level.mesh.triangles.begin(), level.mesh.triangles.end(),
+                        [&](const mesh::Triangle& t) { return orientation_in_atlas(level.mesh, t) == 1; }));
+    }
+  }
+}
+
+TEST_CASE("where the surface ends, no level shows what lies behind the rim, however few triangles it has") {
+  for (const std::uint32_t seed : {1U, 2U, 3U}) {
+    const World world = lod_tests::punctured(bumpy_world(4, seed));
+    const lod::FullSurface full = world.full();
+    mesh::ThreadPool threads(1);
+    const lod::Ruler ruler(full, threads);
+    for (const lod::Level& level : levels_of(world, counts({800, 100, 30, 4}))) {
+      CAPTURE(seed);
+      CHECK_FALSE(level.concessions.is_short);
+      CHECK(ruler.texture_deviation(level).outside == 0);
+      CHECK(area_in_atlas(level.mesh) <= area_in_atlas(world.cut));
+      CHECK(std::all_of(level.mesh.triangles.begin(), level.mesh.triangles.end(),
+                        [&](const mesh::Triangle& t) { return orientation_in_atlas(level.mesh, t) == 1; }));
+    }
+    // A level that has enough triangles keeps the rim's line, too.
+    CHECK(area_in_atlas(levels_of(world, counts({800})).front().mesh) > 0.99 * area_in_atlas(world.cut));
+  }
 }
 
 TEST_CASE("components stay as long as they can, and it is said when one has to go") {
