@@ -54,7 +54,7 @@ void BlobStore::remove(std::string_view job) {
   guarded("delete a job's files", [&] { fs::remove_all(directory(job)); });
 }
 
-void BlobStore::remove_output(std::string_view job, std::string_view name) {
+void BlobStore::remove_output(std::string_view job, std::string_view name) const {
   guarded("delete a job's files", [&] { fs::remove(output_path(job, name)); });
 }
 

@@ -30,7 +30,7 @@ public:
   [[nodiscard]] std::filesystem::path input_path(std::string_view job, std::size_t number) const;
   [[nodiscard]] std::filesystem::path output_path(std::string_view job, std::string_view name) const;
   void remove(std::string_view job);
-  void remove_output(std::string_view job, std::string_view name);
+  void remove_output(std::string_view job, std::string_view name) const;
   // Its size in bytes; nothing where there is no such output.
   [[nodiscard]] std::optional<std::uint64_t> output_size(std::string_view job, std::string_view name) const;
   // Directories in the store, to find what no job owns.

@@ -13,7 +13,7 @@ using Matrix5 = Eigen::Matrix<double, 5, 5>;
 
 constexpr double damping = 0.03;      // of the mean curvature: flat places hold u only through it
 constexpr double least_gain = 1e-3;   // of the deviation
-constexpr double least_step = 0.25;   // of Newton's
+constexpr int most_halvings = 2;      // of Newton's step
 constexpr double least_cosine = 0.2;  // of the angle by which a triangle may turn
 constexpr std::size_t least_data = 4; // witnesses
 
@@ -117,7 +117,8 @@ private:
     const Vec3d position = draft_.positions[v];
     const double most = (1 - least_gain) * draft_.energy(numbers_, triangles_);
     const int sign = draft_.atlas_orientation(triangles_[0]);
-    for (double length = 1; length >= least_step; length /= 2) {
+    for (int halvings = 0; halvings <= most_halvings; ++halvings) {
+      const double length = std::ldexp(1, -halvings);
       if (put(v, before, position, *step * length) && is_sound(sign) && draft_.energy(numbers_, triangles_) < most) {
         draft_.level().near[v] = near_;
         draft_.sort_again(stars_[v]);

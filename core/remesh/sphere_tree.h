@@ -52,7 +52,7 @@ private:
   };
 
   // Of the triangle's part of the sphere, bulge included.
-  static Box box_of(const std::array<Vec3d, 3>& corners);
+  static Box box_of(const std::array<Vec3d, 3>& p);
   std::uint32_t build(std::uint32_t first, std::uint32_t last);
 
   template <class Visit> void search(const Box& box, Visit visit) const {

@@ -28,8 +28,8 @@ struct Jet {
 };
 
 struct SymmetricDirichlet {
-  [[nodiscard]] double value(double V, double area) const { return 0.25 + area * area / (V * V); }
-  [[nodiscard]] Jet jet(double V, double area) const {
+  [[nodiscard]] static double value(double V, double area) { return 0.25 + area * area / (V * V); }
+  [[nodiscard]] static Jet jet(double V, double area) {
     const double inverse = 1 / V, ratio = area * area * inverse * inverse;
     const double first = -2 * ratio * inverse;
     return {0.25 + ratio, first, -3 * first * inverse};
@@ -37,8 +37,8 @@ struct SymmetricDirichlet {
 };
 
 struct Stretch {
-  [[nodiscard]] double value(double V, double area) const { return 2 * area * area / (V * V); }
-  [[nodiscard]] Jet jet(double V, double area) const {
+  [[nodiscard]] static double value(double V, double area) { return 2 * area * area / (V * V); }
+  [[nodiscard]] static Jet jet(double V, double area) {
     const double inverse = 1 / V, ratio = 2 * area * area * inverse * inverse;
     const double first = -2 * ratio * inverse;
     return {ratio, first, -3 * first * inverse};

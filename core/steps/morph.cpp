@@ -226,7 +226,7 @@ std::optional<MorphEnd> read_morph_end(const Request& request, const Limits& lim
     report.notes.push_back({note.code, "the second model: " + note.message, note.where});
   for (const Note& note : own.notes)
     report.notes.push_back({note.code, "the second model: " + note.message, note.where});
-  report.morph.emplace();
+  report.morph = Report::Morph{};
   report.morph->format = std::string(name_of(end.asset.format));
   report.morph->input_triangles = own.input_triangles;
   return end;

@@ -235,8 +235,8 @@ private:
     next[p] += c.vertices;
     const asset::Attribute& position = *asset.primitives[p].find("POSITION");
     for (std::uint32_t v = first; v < first + c.vertices; ++v) {
-      out_.mesh.positions.push_back({static_cast<float>(position.get(v, 0)), static_cast<float>(position.get(v, 1)),
-                                     static_cast<float>(position.get(v, 2))});
+      out_.mesh.positions.emplace_back(static_cast<float>(position.get(v, 0)), static_cast<float>(position.get(v, 1)),
+                                       static_cast<float>(position.get(v, 2)));
     }
     points.insert(points.end(), remade.sphere.points.begin(), remade.sphere.points.end());
     const std::uint32_t in_row = new_first_[p] + first;

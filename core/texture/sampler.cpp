@@ -28,7 +28,8 @@ struct Between {
 // at: in [0, size], wrapped already. Beside the image's edge lies, where it repeats, the other edge.
 inline Between between(double at, std::uint32_t size, Wrap wrap) {
   const double from_first_centre = at - 0.5;
-  const auto i = static_cast<std::int64_t>(at + 0.5) - 1; // rounded down: the sum is not negative
+  // Rounded down: the sum is not negative. Faster than std::floor.
+  const auto i = static_cast<std::int64_t>(at + 0.5) - 1; // NOLINT(bugprone-incorrect-roundings)
   const auto part = static_cast<float>(from_first_centre - static_cast<double>(i));
   if (i >= 0 && i + 1 < std::int64_t{size}) {
     const auto first = static_cast<std::uint32_t>(i);
@@ -83,10 +84,12 @@ Light Sampler::sample(double x, double y, std::uint32_t level) const {
   level = std::min(level, static_cast<std::uint32_t>(mips_.size()));
   const Image& image = level == 0 ? *image_ : mips_[level - 1];
   const double scale = level == 0 ? 1.0 : 1.0 / static_cast<double>(std::uint64_t{1} << level);
-  const auto [x0, x1, s] = between(scale * wrapped(x, image_->width, wrap_u_), image.width, wrap_u_);
-  const auto [y0, y1, t] = between(scale * wrapped(y, image_->height, wrap_v_), image.height, wrap_v_);
+  const Between across = between(scale * wrapped(x, image_->width, wrap_u_), image.width, wrap_u_);
+  const Between down = between(scale * wrapped(y, image_->height, wrap_v_), image.height, wrap_v_);
   const std::array<float, 256>& value = encoding_ == Encoding::srgb ? srgb_tables.linear : srgb_tables.fraction;
-  const std::uint8_t *a = image.at(x0, y0), *b = image.at(x1, y0), *c = image.at(x0, y1), *d = image.at(x1, y1);
+  const float s = across.part, t = down.part;
+  const std::uint8_t *a = image.at(across.first, down.first), *b = image.at(across.second, down.first);
+  const std::uint8_t *c = image.at(across.first, down.second), *d = image.at(across.second, down.second);
   const auto mixed = [&](const std::array<float, 256>& of, std::size_t k) {
     const float top = of[a[k]] + s * (of[b[k]] - of[a[k]]), bottom = of[c[k]] + s * (of[d[k]] - of[c[k]]);
     return top + t * (bottom - top);

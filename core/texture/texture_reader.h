@@ -46,7 +46,7 @@ public:
 
   // The mean over the texel whose centre has these weights: linear light or plain numbers, straight alpha. Reads only
   // points of the triangle: beyond a seam of the input's own atlas lies something else.
-  [[nodiscard]] static Light read(const Footprint& footprint, const std::array<double, 3>& weights);
+  [[nodiscard]] static Light read(const Footprint& f, const std::array<double, 3>& centre);
 
 private:
   std::span<const CornerUv> uv_;
