@@ -61,7 +61,7 @@ public:
     apply(candidates_[1], row, above, [](int, int up, int) { return up; });
     apply(candidates_[2], row, above, [](int left, int up, int corner) { return paeth(left, up, corner); });
     const auto* best = std::min_element(candidates_.begin(), candidates_.end(),
-                                       [](const Candidate& a, const Candidate& b) { return a.sum < b.sum; });
+                                        [](const Candidate& a, const Candidate& b) { return a.sum < b.sum; });
     to[0] = best->code;
     std::memcpy(to + 1, best->bytes.data(), best->bytes.size());
   }
