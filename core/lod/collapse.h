@@ -88,8 +88,8 @@ private:
 
   const FullSurface& full_;
   WedgeMesh& mesh_;
-  std::vector<std::int8_t> sign_; // by region: the orientation of its triangles in the atlas
-  std::vector<Step> steps_;       // of the collapse in work, with its twins
+  std::vector<int> sign_;   // by region: the orientation of its triangles in the atlas
+  std::vector<Step> steps_; // of the collapse in work, with its twins
   std::vector<std::uint32_t> kept_;
 };
 
