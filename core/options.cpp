@@ -10,7 +10,7 @@
 namespace orbis {
 namespace {
 
-constexpr std::array<OptionInfo, 21> table{{
+constexpr std::array<OptionInfo, 22> table{{
     {"topology", "repair | strict", "repair",
      "repair: whatever has triangles is parametrized; strict: anything but one closed component of genus 0 is refused"},
     {"weld_tolerance", "a number, 0 or more", "0",
@@ -27,13 +27,16 @@ constexpr std::array<OptionInfo, 21> table{{
     {"texture", "auto | pattern | cubemap | base_color", "auto",
      "what the atlas shows: the model's own base colour where it has one, else a numbered test pattern"},
     {"texture_size", "64 to 8192", "2048", "width of the atlas' largest image in texels"},
+    {"texel_density", "a number, 0 or more", "0",
+     "texels per unit of length, in the model's units before node transforms, with pages as large as that takes; 0: "
+     "texture_size decides"},
     {"atlas", "per-material | single", "per-material",
      "an image for each material (those that meet on one component share theirs), or one for the file"},
     {"texture_format", "png | jpeg | webp", "png", "how the atlas is stored in the result"},
     {"jpeg_quality", "1 to 100", "90", "with texture_format=jpeg or webp"},
     {"maps",
      "auto | all | names from "
-     "base_color,metallic_roughness,occlusion,emissive,normal,object_normal,ambient_occlusion,position",
+     "base_color,metallic_roughness,occlusion,emissive,normal,object_normal,ambient_occlusion,position,displacement",
      "auto",
      "what is baked into the atlas: auto is the base colour and every texture that the materials have, all that and "
      "what comes from the geometry"},
@@ -267,7 +270,8 @@ MapSelection maps_of(std::string_view text) {
       maps.automatic = true;
     } else if (name == "all") {
       maps.automatic = true;
-      for (const Map map : {Map::normal, Map::object_normal, Map::ambient_occlusion, Map::position}) {
+      for (const Map map :
+           {Map::normal, Map::object_normal, Map::ambient_occlusion, Map::position, Map::displacement}) {
         maps.named[static_cast<std::size_t>(map)] = true;
       }
     } else {
@@ -311,6 +315,8 @@ void set_option(Options& options, std::string_view name, std::string_view value)
     options.texture = choice<TextureSource>(name, value, sources);
   } else if (name == "texture_size") {
     options.texture_size = number<std::uint32_t>(name, value, 64, 8192);
+  } else if (name == "texel_density") {
+    options.texel_density = number<double>(name, value, 0.0, 1e30);
   } else if (name == "atlas") {
     options.atlas = choice<AtlasPages>(name, value, pages);
   } else if (name == "texture_format") {
@@ -352,6 +358,7 @@ std::string get_option(const Options& options, std::string_view name) {
   if (name == "threshold") return text_of(options.threshold);
   if (name == "texture") return text_of(options.texture, sources);
   if (name == "texture_size") return std::to_string(options.texture_size);
+  if (name == "texel_density") return text_of(options.texel_density);
   if (name == "atlas") return text_of(options.atlas, pages);
   if (name == "texture_format") return text_of(options.texture_format, formats);
   if (name == "jpeg_quality") return std::to_string(options.jpeg_quality);

@@ -56,11 +56,12 @@ enum class Map : std::uint8_t {
   normal,        // tangent space
   object_normal, // in the space of POSITION
   ambient_occlusion,
-  position // a geometry image
+  position,    // a geometry image
+  displacement // of the full surface from each level of detail
 };
-inline constexpr std::array<std::string_view, 8> map_names{
-    "base_color", "metallic_roughness", "occlusion",         "emissive",
-    "normal",     "object_normal",      "ambient_occlusion", "position"};
+inline constexpr std::array<std::string_view, 9> map_names{
+    "base_color",    "metallic_roughness", "occlusion", "emissive",    "normal",
+    "object_normal", "ambient_occlusion",  "position",  "displacement"};
 constexpr std::string_view name_of(Map map) { return map_names[static_cast<std::size_t>(map)]; }
 
 struct MapSelection {
@@ -86,6 +87,8 @@ struct Options {
   // automatic: the model's own base colour where it has one that came with the request, else the test pattern.
   TextureSource texture = TextureSource::automatic;
   std::uint32_t texture_size = 2048; // width of the largest page in texels, 64 to 8192
+  // Texels per unit of length, before node transforms, where that decides in texture_size's place; 0: it does not.
+  double texel_density = 0;
   // per_material: each material keeps an image of its own, as in the input, so that its factors, alpha mode and
   // samplers go on meaning what they meant and what is not drawn need not be loaded. single: one image for the file.
   AtlasPages atlas = AtlasPages::per_material;

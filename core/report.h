@@ -125,7 +125,8 @@ struct Report {
     std::string name; // of the file: "normal.png"; with several pages "normal-2.png"
     std::uint32_t page = 0, width = 0, height = 0, bits = 8;
     std::uint64_t bytes = 0;
-    // Position maps: a texel's number n in [0, 1] is the coordinate offset + n * scale.
+    // Position maps: a texel's number n in [0, 1] is the coordinate offset + n * scale. Displacement maps: so is the
+    // distance along the level's normal, by x alone.
     struct Range {
       Vec3d offset, scale;
     };

@@ -43,6 +43,11 @@ struct Attribute {
   void set(std::size_t v, std::uint32_t c, double value);
 };
 
+// The first three components of vertex v.
+[[nodiscard]] inline Vec3d vector_at(const Attribute& attribute, std::size_t v) {
+  return {attribute.get(v, 0), attribute.get(v, 1), attribute.get(v, 2)};
+}
+
 // One triangle primitive (mode 4, 5 or 6 in the input; here always a triangle list, always indexed).
 struct Primitive {
   std::uint32_t mesh = 0, primitive = 0;       // its place in the document: /meshes/mesh/primitives/primitive
@@ -130,6 +135,9 @@ struct NewPrimitive {
   std::vector<std::uint32_t> left_out{};
   // The name of the last target where that is not the input's; all new primitives of a mesh then have it.
   std::string added_target{};
+
+  // The attribute of this name, or null.
+  [[nodiscard]] const Attribute* find(std::string_view name) const;
 };
 
 // A coarser version of the new primitives.

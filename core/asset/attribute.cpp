@@ -42,6 +42,12 @@ double one_of(ComponentType type) {
   return 1;
 }
 
+const Attribute* find_in(const std::vector<Attribute>& attributes, std::string_view name) {
+  const auto found =
+      std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.name == name; });
+  return found == attributes.end() ? nullptr : &*found;
+}
+
 } // namespace
 
 double Attribute::get(std::size_t v, std::uint32_t c) const {
@@ -90,11 +96,8 @@ void Attribute::set(std::size_t v, std::uint32_t c, double value) {
   }
 }
 
-const Attribute* Primitive::find(std::string_view name) const {
-  const auto found =
-      std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.name == name; });
-  return found == attributes.end() ? nullptr : &*found;
-}
+const Attribute* Primitive::find(std::string_view name) const { return find_in(attributes, name); }
+const Attribute* NewPrimitive::find(std::string_view name) const { return find_in(attributes, name); }
 
 std::size_t Primitive::vertex_count() const { return attributes.empty() ? 0 : attributes.front().count(); }
 

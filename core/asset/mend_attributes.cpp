@@ -11,8 +11,6 @@ namespace {
 // How far float unit vectors and sums of weights are off for their rounding alone, generously.
 constexpr double unit_tolerance = 0.005, sum_tolerance = 1e-6;
 
-Vec3d vector_at(const Attribute& a, std::size_t v) { return {a.get(v, 0), a.get(v, 1), a.get(v, 2)}; }
-
 void set_vector(Attribute& a, std::size_t v, const Vec3d& value) {
   a.set(v, 0, value.x);
   a.set(v, 1, value.y);

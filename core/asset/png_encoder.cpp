@@ -174,11 +174,12 @@ private:
 };
 
 std::vector<std::byte> header_of(const Pixels& pixels) {
-  constexpr int rgb = 2, rgba = 6;
+  constexpr int grey = 0, rgb = 2, rgba = 6;
+  const int type = pixels.channels == 1 ? grey : pixels.channels == 3 ? rgb : rgba;
   ChunkWriter header;
   header.number(pixels.width);
   header.number(pixels.height);
-  header.bytes({static_cast<int>(pixels.bits), pixels.channels == 4 ? rgba : rgb, 0, 0, 0});
+  header.bytes({static_cast<int>(pixels.bits), type, 0, 0, 0});
   return header.take();
 }
 

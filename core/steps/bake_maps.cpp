@@ -23,10 +23,11 @@ BakedMaps bake_maps(const Request& request, const Limits& limits, const SurfaceI
   PageBaking page(job);
   MaterialMaps materials(job, page);
   GeometryMaps geometry(job, page);
-  const std::array<std::function<void()>, 6> steps{
+  const std::array<std::function<void()>, 7> steps{
       [&] { materials.bake_base_color(); },       [&] { materials.bake_metallic_roughness_and_occlusion(); },
       [&] { materials.bake_emissive(); },         [&] { geometry.bake_normals(); },
       [&] { geometry.bake_ambient_occlusion(); }, [&] { geometry.bake_positions(); },
+      [&] { geometry.bake_displacements(); },
   };
   const std::size_t pages = from.cut.pages.size();
   const std::uint64_t total = pages * steps.size();

@@ -20,11 +20,6 @@ struct Piece {
   std::uint64_t folded_in_atlas = 0;
 };
 
-Vec3f vector_at(const asset::Attribute& attribute, std::size_t v) {
-  return {static_cast<float>(attribute.get(v, 0)), static_cast<float>(attribute.get(v, 1)),
-          static_cast<float>(attribute.get(v, 2))};
-}
-
 // +1 or -1: how the triangles of the full surface lie in the atlas, all of them alike.
 int atlas_orientation(const texture::CutMesh& cut) {
   double area = 0;
@@ -63,7 +58,7 @@ public:
         std::array<Vec2f, 3> corner;
         for (std::size_t k = 0; k < 3; ++k) {
           const std::uint32_t v = read.indices[3 * t + k];
-          piece.on_sphere.positions.push_back(vector_at(sphere, v));
+          piece.on_sphere.positions.push_back(Vec3f(asset::vector_at(sphere, v)));
           corner[k] = {static_cast<float>(uv->get(v, 0)), static_cast<float>(uv->get(v, 1))};
         }
         piece.on_sphere.triangles.push_back({first, first + 1, first + 2});

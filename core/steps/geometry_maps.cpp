@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/steps/tangent_frames.h"
+#include "core/texture/bake_displacement.h"
 #include "core/texture/bake_occlusion.h"
 #include "core/texture/smooth_frames.h"
 
@@ -183,6 +184,36 @@ void GeometryMaps::bake_positions() {
   page_.add(texture::bake_positions(page_.map(), page_.values().positions(), box, job_.progress, page_.pool()),
             MapKind::data, "position", false);
   page_.last_map().range = {box.low, box.high - box.low};
+}
+
+void GeometryMaps::bake_displacements() {
+  if (!job_.options().maps.names(Map::displacement)) return;
+  if (job_.levels.empty() && page_.page() == 0) {
+    job_.report.notes.push_back({"map-not-baked",
+                                 "a displacement map tells how the full surface lies over a level of detail, and the "
+                                 "job asks for no level: see the option lods",
+                                 std::string(name_of(Map::displacement))});
+  }
+  for (std::size_t i = 0; i < job_.levels.size(); ++i)
+    bake_displacement_of(job_.levels[i], "displacement_lod" + std::to_string(i + 1));
+}
+
+void GeometryMaps::bake_displacement_of(const DetailLevel& level, const std::string& name) {
+  const texture::CutMesh& mesh = level.level.mesh;
+  const PageOfMesh coarse(mesh, page_.page(), page_.pool());
+  std::vector<Vec3f> positions(mesh.vertices.size()), normals(mesh.vertices.size());
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const OutputVertex o = level.delivery.of_cut_vertex[v];
+    const asset::NewPrimitive& primitive = level.delivery.primitives[o.primitive];
+    positions[v] = Vec3f(asset::vector_at(*primitive.find("POSITION"), o.vertex));
+    if (const asset::Attribute* normal = primitive.find("NORMAL"))
+      normals[v] = Vec3f(asset::vector_at(*normal, o.vertex));
+  }
+  const texture::Displacement baked =
+      texture::bake_displacement(page_.map(), page_.values().positions(), job_.cut.chart,
+                                 {&coarse.map, &mesh, positions, normals}, job_.progress, page_.pool());
+  page_.add(baked.image, MapKind::data, name, false);
+  page_.last_map().range = {{baked.offset, 0, 0}, {baked.scale, 0, 0}};
 }
 
 } // namespace orbis

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/steps/occlusion_trees.h"
@@ -23,8 +24,11 @@ public:
   // In as many texels as the bound on the rays allows.
   void bake_ambient_occlusion();
   void bake_positions();
+  // One map for each level of detail, "displacement_lod1" first; a note where there are none.
+  void bake_displacements();
 
 private:
+  void bake_displacement_of(const DetailLevel& level, const std::string& name);
   [[nodiscard]] std::vector<bool> takes_normal_map(const SlotTextures& textures) const;
   [[nodiscard]] std::vector<bool> levels_take_normal_map(const std::vector<bool>& full) const;
   [[nodiscard]] TangentFrames frames_of_full(const std::vector<bool>& wanted, Delivery& delivery, Report& report) const;

@@ -54,28 +54,21 @@ private:
 class Shown {
 public:
   Shown(const texture::CutMesh& mesh, const Delivery& delivery) : mesh_(mesh) {
-    const auto find = [](const asset::NewPrimitive& primitive, std::string_view name) {
-      const auto found = std::ranges::find_if(primitive.attributes, [&](const auto& a) { return a.name == name; });
-      return found == primitive.attributes.end() ? nullptr : &*found;
-    };
-    const auto vector_at = [](const asset::Attribute& a, std::uint32_t v) {
-      return Vec3d{a.get(v, 0), a.get(v, 1), a.get(v, 2)};
-    };
     struct Attributes {
       const asset::Attribute *position, *normal, *tangent;
     };
     std::vector<Attributes> attributes;
     for (const asset::NewPrimitive& p : delivery.primitives)
-      attributes.push_back({find(p, "POSITION"), find(p, "NORMAL"), find(p, "TANGENT")});
+      attributes.push_back({p.find("POSITION"), p.find("NORMAL"), p.find("TANGENT")});
     vertices_.resize(mesh.vertices.size());
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
       const OutputVertex o = delivery.of_cut_vertex[v];
       const Attributes& a = attributes[o.primitive];
-      positions_.emplace_back(vector_at(*a.position, o.vertex));
+      positions_.emplace_back(asset::vector_at(*a.position, o.vertex));
       vertices_[v].primitive = o.primitive;
-      if (a.normal != nullptr) vertices_[v].normal = vector_at(*a.normal, o.vertex);
+      if (a.normal != nullptr) vertices_[v].normal = asset::vector_at(*a.normal, o.vertex);
       if (a.tangent == nullptr) continue;
-      vertices_[v].tangent = vector_at(*a.tangent, o.vertex);
+      vertices_[v].tangent = asset::vector_at(*a.tangent, o.vertex);
       vertices_[v].bitangent = cross(vertices_[v].normal, vertices_[v].tangent) * a.tangent->get(o.vertex, 3);
     }
   }

@@ -20,6 +20,7 @@ namespace orbis {
 namespace {
 
 using asset::Attribute;
+using asset::vector_at;
 
 // The second model's part of the work goes on behind the first one's.
 class OnlyCancellation final : public Progress {
@@ -159,10 +160,6 @@ std::vector<VertexSource> sources_on(const MorphEnd& end, remesh::SphereMesh sam
 const Attribute* find(std::span<const Attribute> attributes, std::string_view name) {
   const auto found = std::ranges::find(attributes, name, &Attribute::name);
   return found == attributes.end() ? nullptr : &*found;
-}
-
-Vec3d vector_at(const Attribute& attribute, std::size_t v) {
-  return {attribute.get(v, 0), attribute.get(v, 1), attribute.get(v, 2)};
 }
 
 // Differences from `before`, where the vertices of the surface are; zero at others.

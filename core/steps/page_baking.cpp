@@ -41,7 +41,7 @@ void PageBaking::open(std::uint32_t page) {
   if (&job_.shown.cut != &job_.cut) delivered_.emplace(job_.shown.cut, page, pool_);
 }
 
-PageBaking::DeliveredPage::DeliveredPage(const texture::CutMesh& cut, std::uint32_t page, mesh::ThreadPool& pool)
+PageOfMesh::PageOfMesh(const texture::CutMesh& cut, std::uint32_t page, mesh::ThreadPool& pool)
     : uv(uv_of(cut)), triangles(triangles_on(cut, page)),
       map({uv, cut.triangles, triangles}, cut.pages[page].width, cut.pages[page].height, pool) {}
 

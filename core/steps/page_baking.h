@@ -38,6 +38,14 @@ struct BakeJob {
 [[nodiscard]] bool any(const SlotTextures& textures);
 [[nodiscard]] bool any(const std::vector<bool>& flags);
 
+// Which triangle of a mesh on the atlas each texel of a page shows.
+struct PageOfMesh {
+  std::vector<Vec2f> uv;
+  std::vector<std::uint32_t> triangles;
+  texture::TexelMap map;
+  PageOfMesh(const texture::CutMesh& cut, std::uint32_t page, mesh::ThreadPool& pool);
+};
+
 class PageBaking {
 public:
   // Keeps a reference to the job. No page is open yet.
@@ -86,13 +94,7 @@ private:
   std::vector<Vec2f> uv_;                   // by cut vertex
   std::uint32_t page_ = 0;
   std::optional<texture::TexelMap> map_;
-  struct DeliveredPage {
-    std::vector<Vec2f> uv;
-    std::vector<std::uint32_t> triangles;
-    texture::TexelMap map;
-    DeliveredPage(const texture::CutMesh& cut, std::uint32_t page, mesh::ThreadPool& pool);
-  };
-  std::optional<DeliveredPage> delivered_; // where these triangles are others
+  std::optional<PageOfMesh> delivered_; // where these triangles are others
   BakedMaps out_;
 };
 

@@ -139,7 +139,8 @@ Note problem_of(const Component& c, const Error& e) {
 class Atlas {
 public:
   Atlas(const asset::Asset& asset, const Surface& surface, std::span<const Vec3d> points, const Options& options)
-      : surface_(surface), texture_size_(options.texture_size), pool_(options.threads) {
+      : surface_(surface), size_{.width = options.texture_size, .texel_density = options.texel_density},
+        pool_(options.threads) {
     const std::vector<std::uint32_t> pages = pages_of(asset, surface, options.atlas);
     components_.reserve(surface.components.size());
     for (std::size_t i = 0; i < surface.components.size(); ++i) {
@@ -160,7 +161,7 @@ public:
         inputs.push_back(c.atlas_component());
         charts.push_back(c.charts());
       }
-      placed_ = texture::place(inputs, charts, texture_size_);
+      placed_ = texture::place(inputs, charts, size_);
       if (placed_.folded.empty()) break;
       NoProgress quiet;
       problems = next(placed_.folded, quiet);
@@ -173,11 +174,21 @@ public:
     for (const ComponentCharts& c : components_)
       out.points.insert(out.points.end(), c.sphere().begin(), c.sphere().end());
     note_turns(report);
+    note_density(report);
     describe(surface_, out.cut, report);
     return out;
   }
 
 private:
+  void note_density(Report& report) const {
+    if (placed_.texel_density >= size_.texel_density) return;
+    report.notes.push_back({"texel-density-lowered",
+                            "the atlas has " + std::to_string(placed_.texel_density) +
+                                " texels per unit of length, not " + std::to_string(size_.texel_density) +
+                                ": a page of " + std::to_string(texture::widest_page) + " texels holds no more",
+                            "texel_density"});
+  }
+
   // One note a mesh, which may have thousands of components.
   void note_turns(Report& report) const {
     std::map<std::uint32_t, std::pair<std::size_t, double>> turned; // mesh -> components, largest angle
@@ -213,7 +224,7 @@ private:
   }
 
   const Surface& surface_;
-  std::uint32_t texture_size_;
+  texture::AtlasSize size_;
   mesh::ThreadPool pool_;
   std::vector<ComponentCharts> components_;
   texture::Placed placed_;

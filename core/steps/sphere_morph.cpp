@@ -11,6 +11,7 @@ namespace orbis {
 namespace {
 
 using asset::Attribute;
+using asset::vector_at;
 
 struct Ball {
   Vec3d centre;
@@ -37,20 +38,10 @@ Attribute differences(const char* name, std::size_t count) {
   return out;
 }
 
-Vec3d vector_at(const Attribute& attribute, std::size_t v) {
-  return {attribute.get(v, 0), attribute.get(v, 1), attribute.get(v, 2)};
-}
-
 void set_vector(Attribute& attribute, std::size_t v, const Vec3d& value) {
   attribute.set(v, 0, value.x);
   attribute.set(v, 1, value.y);
   attribute.set(v, 2, value.z);
-}
-
-const Attribute* find(const asset::NewPrimitive& primitive, std::string_view name) {
-  for (const Attribute& a : primitive.attributes)
-    if (a.name == name) return &a;
-  return nullptr;
 }
 
 class SphereMorph {
@@ -91,8 +82,8 @@ private:
   }
 
   [[nodiscard]] Key key(std::size_t p, std::size_t v, bool with_position) const {
-    const Vec3d s = vector_at(*find(delivery_.primitives[p], "_SPHERE"), v);
-    const Vec3d at = with_position ? vector_at(*find(delivery_.primitives[p], "POSITION"), v) : Vec3d{};
+    const Vec3d s = vector_at(*delivery_.primitives[p].find("_SPHERE"), v);
+    const Vec3d at = with_position ? vector_at(*delivery_.primitives[p].find("POSITION"), v) : Vec3d{};
     return {asset_.primitives[p].mesh, {s.x, s.y, s.z, at.x, at.y, at.z}};
   }
 
@@ -107,8 +98,8 @@ private:
 
   void add_target(std::size_t p) {
     asset::NewPrimitive& primitive = delivery_.primitives[p];
-    const Attribute &position = *find(primitive, "POSITION"), &sphere = *find(primitive, "_SPHERE");
-    const Attribute* normal = find(primitive, "NORMAL");
+    const Attribute &position = *primitive.find("POSITION"), &sphere = *primitive.find("_SPHERE");
+    const Attribute* normal = primitive.find("NORMAL");
     Attribute moves = differences("POSITION", position.count()), turns = differences("NORMAL", position.count());
     for (std::size_t v = 0; v < position.count(); ++v) {
       const std::uint32_t c = component_of(p, v);

@@ -53,7 +53,7 @@ FlatCharts lay_flat(const AtlasComponent& component, Progress& progress, mesh::T
 CutMesh make_atlas(const AtlasComponent& component, std::uint32_t texture_size, Progress& progress) {
   mesh::ThreadPool here(1);
   const FlatCharts charts = lay_flat(component, progress, here);
-  Placed placed = place(std::span(&component, 1), std::span(&charts, 1), texture_size);
+  Placed placed = place(std::span(&component, 1), std::span(&charts, 1), {.width = texture_size});
   if (!placed.folded.empty())
     throw Error(ErrorCode::not_certified, "a triangle is too small for the numbers of the atlas");
   progress.report(Stage::atlas, 1, 1);

@@ -22,7 +22,7 @@ struct Image {
 
 struct Image16 {
   std::uint32_t width = 0, height = 0;
-  std::uint32_t channels = 3;        // RGB
+  std::uint32_t channels = 3;        // 1: grey, 3: RGB
   std::vector<std::uint16_t> pixels; // width * height * channels
 
   [[nodiscard]] const std::uint16_t* at(std::uint32_t x, std::uint32_t y) const {

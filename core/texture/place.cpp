@@ -95,8 +95,8 @@ private:
 
 class Placer {
 public:
-  Placer(std::span<const AtlasComponent> components, std::span<const FlatCharts> charts, std::uint32_t texture_size)
-      : components_(components), charts_(charts), texture_size_(texture_size) {
+  Placer(std::span<const AtlasComponent> components, std::span<const FlatCharts> charts)
+      : components_(components), charts_(charts) {
     std::uint32_t pages = 0;
     for (const AtlasComponent& c : components) pages = std::max(pages, c.page + 1);
     packers_.resize(pages);
@@ -110,8 +110,11 @@ public:
       }
   }
 
-  Placed run() {
-    choose_density();
+  Placed run(const AtlasSize& size) {
+    width_ = size.width;
+    if (size.texel_density > 0 && !take_density(size.texel_density)) width_ = widest_page;
+    if (density_ <= 0) choose_density();
+    out_.texel_density = density_;
     turned_.resize(out_.mesh.charts.size());
     for (std::uint32_t p = 0; p < packers_.size(); ++p) place_page(p);
     out_.mesh.points = 0;
@@ -129,7 +132,7 @@ private:
 
   std::span<const AtlasComponent> components_;
   std::span<const FlatCharts> charts_;
-  std::uint32_t texture_size_;
+  std::uint32_t width_ = 0;             // of the page with most surface, or about that
   std::vector<std::uint32_t> chart_of_; // charts of all components in a row -> chart of the atlas
   std::vector<PagePacker> packers_;     // one per page
   std::vector<Extent> pages_;
@@ -137,12 +140,33 @@ private:
   std::vector<bool> turned_;
   Placed out_;
 
-  // The page with the largest surface decides, in the shape that wastes least; the others follow.
-  void choose_density() {
-    const auto largest = static_cast<std::size_t>(
+  [[nodiscard]] std::size_t largest_page() const {
+    return static_cast<std::size_t>(
         std::max_element(packers_.begin(), packers_.end(),
                          [](const PagePacker& a, const PagePacker& b) { return a.area() < b.area(); }) -
         packers_.begin());
+  }
+
+  // Pages for a density that was asked for; false, with density_ 0, where one would have to be too wide.
+  bool take_density(double density) {
+    const PagePacker& packer = packers_[largest_page()];
+    const double side = density * std::sqrt(packer.area());
+    if (side > widest_page) return false;
+    width_ = std::max(multiple_of_4(side), smallest_page);
+    out_.mesh.gutter = gutter_for(packer);
+    pages_.clear();
+    for (const PagePacker& each : packers_) {
+      const auto page = each.smallest(density, out_.mesh.gutter, widest_page);
+      if (!page) return false;
+      pages_.push_back(*page);
+    }
+    density_ = density;
+    return true;
+  }
+
+  // The page with the largest surface decides, in the shape that wastes least; the others follow.
+  void choose_density() {
+    const std::size_t largest = largest_page();
     const PagePacker& packer = packers_[largest];
     out_.mesh.gutter = gutter_for(packer);
     double best = 0;
@@ -168,7 +192,7 @@ private:
     pages_.assign(packers_.size(), shape);
     for (std::size_t p = 0; p < packers_.size(); ++p) {
       if (p == largest) continue;
-      const auto page = packers_[p].smallest(density_, out_.mesh.gutter, texture_size_);
+      const auto page = packers_[p].smallest(density_, out_.mesh.gutter, width_);
       if (!page) return false;
       pages_[p] = *page;
     }
@@ -176,9 +200,9 @@ private:
   }
 
   [[nodiscard]] std::uint32_t gutter_for(const PagePacker& packer) const {
-    const Extent page{texture_size_, texture_size_};
-    const double density = 0.9 * texture_size_ / std::sqrt(packer.area());
-    std::uint32_t gutter = std::bit_floor(std::max(texture_size_ / 128, least_gutter));
+    const Extent page{width_, width_};
+    const double density = 0.9 * width_ / std::sqrt(packer.area());
+    std::uint32_t gutter = std::bit_floor(std::max(width_ / 128, least_gutter));
     while (gutter > least_gutter && packer.gutter_share(page, density, gutter) > most_for_gutters) gutter /= 2;
     return gutter;
   }
@@ -186,9 +210,9 @@ private:
   // A few charts may fit a lower page better; many fill a square as well.
   [[nodiscard]] std::vector<Extent> shapes(std::size_t charts) const {
     constexpr std::size_t many = 60;
-    std::vector<Extent> out{{texture_size_, texture_size_ / 4 * 4}};
+    std::vector<Extent> out{{width_, width_ / 4 * 4}};
     for (int sixteenths = 15; charts < many && sixteenths >= 8; --sixteenths)
-      out.push_back({texture_size_, multiple_of_4(texture_size_ * sixteenths / 16.0)});
+      out.push_back({width_, multiple_of_4(width_ * sixteenths / 16.0)});
     return out;
   }
 
@@ -252,11 +276,10 @@ private:
 
 } // namespace
 
-Placed place(std::span<const AtlasComponent> components, std::span<const FlatCharts> charts,
-             std::uint32_t texture_size) {
-  if (texture_size < 64 || texture_size > 8192)
+Placed place(std::span<const AtlasComponent> components, std::span<const FlatCharts> charts, const AtlasSize& size) {
+  if (size.width < smallest_page || size.width > widest_page)
     throw Error(ErrorCode::invalid_option, "the atlas must be 64 to 8192 texels wide", "texture_size");
-  return Placer(components, charts, texture_size).run();
+  return Placer(components, charts).run(size);
 }
 
 } // namespace orbis::texture

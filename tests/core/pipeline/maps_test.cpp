@@ -229,6 +229,45 @@ TEST_CASE("the position map and its range give the surface back") {
   }
 }
 
+TEST_CASE("every level has a displacement map, and the coarser one has more to displace") {
+  const GltfBuilder b = painted_sphere();
+  const Result result = run(b, {{"maps", "displacement"}, {"lods", "0.25,0.02"}});
+  CHECK(names_of(result) == std::vector<std::string>{"displacement_lod1.png", "displacement_lod2.png"});
+  std::array<double, 2> most{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Report::BakedMap& map = result.report.maps.at(i);
+    CAPTURE(map.name);
+    CHECK(map.bits == 16);
+    REQUIRE(map.range);
+    most[i] = map.range->scale.x;
+    // The level's vertices lie outside of the sphere, the middles of its triangles inside.
+    CHECK(map.range->offset.x < 0);
+    CHECK(map.range->offset.x + map.range->scale.x > 0);
+  }
+  CHECK(most[0] < 0.05);
+  CHECK(most[1] > 3 * most[0]);
+  CHECK(most[1] < 0.4);
+}
+
+TEST_CASE("without levels there is nothing to displace, and the report says so") {
+  const Result result = run(painted_sphere(), {{"maps", "displacement"}});
+  CHECK(result.maps.empty());
+  REQUIRE(std::ranges::count(result.report.notes, "map-not-baked", &Note::code) == 1);
+}
+
+TEST_CASE("the atlas is as large as the texel density asks for, and says where it cannot be") {
+  constexpr double area = 12.4; // of the divided icosahedron, a little less than the sphere's
+  const auto density_of = [](const Result& r) {
+    const Report::BakedMap& map = r.report.maps.at(0);
+    return std::sqrt(r.report.atlas.utilisation * map.width * map.height / area);
+  };
+  const Result coarse = run(painted_sphere(), {{"texel_density", "20"}});
+  const Result fine = run(painted_sphere(), {{"texel_density", "60"}});
+  CHECK(density_of(coarse) == doctest::Approx(20).epsilon(0.15));
+  CHECK(density_of(fine) == doctest::Approx(60).epsilon(0.15));
+  CHECK(std::ranges::count(fine.report.notes, "texel-density-lowered", &Note::code) == 0);
+}
+
 TEST_CASE("a map that nothing could be baked from is noted") {
   GltfBuilder b = painted_sphere();
   b.json["materials"][0].erase("emissiveTexture");

@@ -26,8 +26,6 @@ Result run(const mesh::TriangleMesh& a, const mesh::TriangleMesh& b,
   return process(request, {}, progress);
 }
 
-Vec3d vector_at(const asset::Attribute& a, std::size_t v) { return {a.get(v, 0), a.get(v, 1), a.get(v, 2)}; }
-
 // A ball of radius 2 around (7, 0, 0), longer along x.
 mesh::TriangleMesh ball() {
   mesh::TriangleMesh m = shapes::sphere(4);

@@ -57,8 +57,6 @@ double area_of(const mesh::TriangleMesh& m) {
   return sum;
 }
 
-Vec3d vector_at(const asset::Attribute& a, std::size_t v) { return {a.get(v, 0), a.get(v, 1), a.get(v, 2)}; }
-
 } // namespace
 
 TEST_CASE(

@@ -88,7 +88,7 @@ TEST_CASE("charts keep their gutters apart, use four fifths of their pages and h
   for (const std::size_t count : {1U, 2U, 7U, 40U}) {
     CAPTURE(count);
     const Spheres spheres(radii_of(count, random), 1);
-    const auto [mesh, folded] = place(spheres.components, spheres.charts, 2048);
+    const auto [mesh, folded, density] = place(spheres.components, spheres.charts, {.width = 2048});
     CHECK(folded.empty());
     REQUIRE(mesh.pages.size() == 1);
     CHECK(mesh.pages[0].width == 2048);
@@ -112,7 +112,7 @@ TEST_CASE("charts keep their gutters apart, use four fifths of their pages and h
 TEST_CASE("pages share one density: where there is less surface, the page is smaller") {
   std::mt19937 random(33);
   const Spheres spheres(radii_of(9, random), 3);
-  const auto [mesh, folded] = place(spheres.components, spheres.charts, 1024);
+  const auto [mesh, folded, density] = place(spheres.components, spheres.charts, {.width = 1024});
   CHECK(folded.empty());
   REQUIRE(mesh.pages.size() == 3);
   std::uint32_t widest = 0;
@@ -126,10 +126,41 @@ TEST_CASE("pages share one density: where there is less surface, the page is sma
   CHECK(utilisation(mesh) > 0.75);
 }
 
+TEST_CASE("a texel density that is asked for is given, on pages as small as they can be") {
+  std::mt19937 random(17);
+  const Spheres spheres(radii_of(7, random), 3);
+  std::uint64_t last = 0;
+  for (const double asked : {4.0, 20.0, 100.0}) {
+    CAPTURE(asked);
+    const auto [mesh, folded, density] = place(spheres.components, spheres.charts, {.texel_density = asked});
+    CHECK(folded.empty());
+    CHECK(density == asked);
+    // Charts are as large as the surface, on average, and whole texels of at least two.
+    double texels = 0, area = 0;
+    for (const Chart& c : mesh.charts) texels += static_cast<double>(c.width) * c.height;
+    for (const FlatCharts& charts : spheres.charts)
+      for (const FlatCharts::Size& size : charts.sizes) area += size.width * size.height;
+    CHECK(std::sqrt(texels / area) == doctest::Approx(asked).epsilon(asked < 10 ? 0.2 : 0.03));
+    std::uint64_t all = 0;
+    for (const Page& page : mesh.pages) all += std::uint64_t{page.width} * page.height;
+    CHECK(all > last);
+    last = all;
+    if (asked > 10) CHECK(utilisation(mesh) > 0.6);
+  }
+}
+
+TEST_CASE("a texel density that the widest page cannot hold is lowered to what it can") {
+  const Spheres spheres({1.0}, 1);
+  const auto [mesh, folded, density] = place(spheres.components, spheres.charts, {.texel_density = 1e6});
+  CHECK(mesh.pages.at(0).width == widest_page);
+  CHECK(density < 1e6);
+  CHECK(density > 1000);
+}
+
 TEST_CASE("an atlas outside 64 to 8192 texels, or with more charts than it can hold, is refused by the option's name") {
   const Spheres spheres(std::vector<double>(30, 1.0), 1);
   for (const std::uint32_t size : {0U, 63U, 8193U, 64U}) try {
-      (void)place(spheres.components, spheres.charts, size);
+      (void)place(spheres.components, spheres.charts, {.width = size});
       FAIL("accepted");
     } catch (const Error& e) {
       CHECK(e.code() == ErrorCode::invalid_option);
@@ -153,7 +184,7 @@ TEST_CASE("triangles that only close a hole are not delivered, and their charts 
   NoProgress progress;
   mesh::ThreadPool pool(1);
   const FlatCharts charts = lay_flat(open, progress, pool);
-  const CutMesh mesh = place(std::span(&open, 1), std::span(&charts, 1), 512).mesh;
+  const CutMesh mesh = place(std::span(&open, 1), std::span(&charts, 1), {.width = 512}).mesh;
   CHECK(mesh.charts.size() == 5);
   for (const std::uint32_t parent : mesh.parent) CHECK(parent < open.delivered);
 }
