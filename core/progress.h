@@ -19,7 +19,8 @@ inline constexpr std::size_t stage_count = stage_names.size();
 constexpr std::string_view name_of(Stage s) { return stage_names[static_cast<std::size_t>(s)]; }
 
 // Implementations must be cheap: report() is called every few thousand vertices from inner loops, from one thread
-// at a time. `done` never falls within a stage and ends at `total`; stages come in the order of the enum.
+// at a time; cancelled() also from others beside it. `done` never falls within a stage and ends at `total`; stages come
+// in the order of the enum.
 class Progress {
 public:
   virtual ~Progress() = default;

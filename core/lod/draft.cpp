@@ -49,15 +49,6 @@ void Draft::write_positions() {
   for (std::size_t v = 0; v < positions.size(); ++v) level_.positions[v] = full_.in_model(positions[v]);
 }
 
-std::array<double, 3> Draft::weights_in(const mesh::Triangle& triangle, const Uv& uv) const {
-  const auto& vertices = level_.mesh.vertices;
-  const Vec2f &a = vertices[triangle[0]].uv, &b = vertices[triangle[1]].uv, &c = vertices[triangle[2]].uv;
-  const double bx = double{b.x} - a.x, by = double{b.y} - a.y, cx = double{c.x} - a.x, cy = double{c.y} - a.y;
-  const double x = uv[0] - a.x, y = uv[1] - a.y, area = bx * cy - by * cx;
-  const double second = (x * cy - y * cx) / area, third = (bx * y - by * x) / area;
-  return {1 - second - third, second, third};
-}
-
 Vec3d Draft::area_normal(const mesh::Triangle& t) const {
   return cross(positions[t[1]] - positions[t[0]], positions[t[2]] - positions[t[0]]);
 }
@@ -72,44 +63,51 @@ bool Draft::is_sound(const mesh::Triangle& t, int sign) const {
   return atlas_orientation(t) == sign && sphere::orientation(v[t[0]].sphere, v[t[1]].sphere, v[t[2]].sphere) == 1;
 }
 
-// The triangle that holds the place, or where rounding leaves none the one that comes closest to it.
-std::size_t Draft::holder(const Uv& uv, std::span<const mesh::Triangle> triangles,
-                          std::array<double, 3>& weights) const {
-  std::size_t best = 0;
+namespace {
+
+// The triangle that holds the place, looked for from `from` on, or where rounding leaves none the one that comes
+// closest to it.
+std::uint32_t holder(std::span<const AtlasTriangle> triangles, std::uint32_t from, const Uv& uv,
+                     std::array<double, 3>& weights) {
+  std::uint32_t best = from;
   double inside = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < triangles.size() && inside < 0; ++i) {
-    const std::array<double, 3> w = weights_in(triangles[i], uv);
+  const auto count = static_cast<std::uint32_t>(triangles.size());
+  for (std::uint32_t i = 0, t = from; i < count && inside < 0; ++i, t = t + 1 == count ? 0 : t + 1) {
+    const std::array<double, 3> w = triangles[t].weights(uv);
     const double least = std::min({w[0], w[1], w[2]});
     if (!(least > inside)) continue;
     inside = least;
-    best = i;
+    best = t;
     weights = w;
   }
   return best;
 }
 
-double Draft::energy(std::span<const std::uint32_t> numbers, std::span<const mesh::Triangle> triangles) const {
+} // namespace
+
+void Draft::collect(std::span<const std::uint32_t> triangles, std::vector<Held>& out) const {
+  out.clear();
+  for (std::uint32_t i = 0; i < triangles.size(); ++i)
+    for (const std::uint32_t w : of_[triangles[i]]) out.push_back({w, i});
+}
+
+double Draft::energy(std::span<Held> held, std::span<const mesh::Triangle> triangles) {
+  in_atlas_.clear();
+  for (const mesh::Triangle& t : triangles) in_atlas_.push_back(in_atlas(t));
   double sum = 0;
-  for (const std::uint32_t number : numbers) {
-    const Witness& witness = witnesses_[number];
+  for (Held& h : held) {
+    const Witness& witness = witnesses_[h.witness];
     std::array<double, 3> w{};
-    const mesh::Triangle& t = triangles[holder(witness.uv, triangles, w)];
+    h.triangle = holder(in_atlas_, h.triangle, witness.uv, w);
+    const mesh::Triangle& t = triangles[h.triangle];
     sum += witness.deviation(positions[t[0]] * w[0] + positions[t[1]] * w[1] + positions[t[2]] * w[2]);
   }
   return sum;
 }
 
-void Draft::sort_again(std::span<const std::uint32_t> triangles) {
-  std::vector<std::uint32_t> numbers;
-  std::vector<mesh::Triangle> corners;
-  for (const std::uint32_t t : triangles) {
-    numbers.insert(numbers.end(), of_[t].begin(), of_[t].end());
-    of_[t].clear();
-    corners.push_back(level_.mesh.triangles[t]);
-  }
-  std::array<double, 3> w{};
-  for (const std::uint32_t number : numbers)
-    of_[triangles[holder(witnesses_[number].uv, corners, w)]].push_back(number);
+void Draft::hand_over(std::span<const Held> held, std::span<const std::uint32_t> triangles) {
+  for (const std::uint32_t t : triangles) of_[t].clear();
+  for (const Held& h : held) of_[triangles[h.triangle]].push_back(h.witness);
 }
 
 } // namespace orbis::lod

@@ -1,6 +1,5 @@
 #include <algorithm>
-#include <set>
-#include <utility>
+#include <unordered_set>
 
 #include "core/lod/refine.h"
 
@@ -11,12 +10,14 @@ constexpr int sweeps = 2;
 constexpr double least_gain = 1e-3;
 constexpr double least_cosine = 0.2; // between a new triangle and the two old ones
 
-using Pair = std::pair<std::uint32_t, std::uint32_t>;
-Pair pair_of(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
+// Two numbers in one, the smaller first.
+std::uint64_t pair_of(std::uint32_t a, std::uint32_t b) {
+  return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
+}
 
 // The edge from corner k to k + 1 of a triangle, by its ends.
 struct Side {
-  Pair ends;
+  std::uint64_t ends = 0;
   std::uint32_t triangle = 0, corner = 0;
 
   friend bool operator<(const Side& x, const Side& y) {
@@ -27,6 +28,7 @@ struct Side {
 class Flips {
 public:
   explicit Flips(Draft& draft) : draft_(draft), mesh_(draft.level().mesh) {
+    joined_.reserve(2 * mesh_.triangles.size());
     for (const mesh::Triangle& t : mesh_.triangles)
       for (std::size_t k = 0; k < 3; ++k) joined_.insert(points_of(t[k], t[(k + 1) % 3]));
   }
@@ -50,7 +52,7 @@ public:
   }
 
 private:
-  [[nodiscard]] Pair points_of(mesh::Index v, mesh::Index w) const {
+  [[nodiscard]] std::uint64_t points_of(mesh::Index v, mesh::Index w) const {
     return pair_of(mesh_.vertices[v].point, mesh_.vertices[w].point);
   }
 
@@ -61,8 +63,8 @@ private:
     const mesh::Triangle one = mesh_.triangles[s.triangle], two = mesh_.triangles[t.triangle];
     const mesh::Index a = one[s.corner], b = one[(s.corner + 1) % 3], c = one[(s.corner + 2) % 3];
     const mesh::Index d = two[(t.corner + 2) % 3];
-    const Pair diagonal = points_of(c, d);
-    if (diagonal.first == diagonal.second || joined_.contains(diagonal)) return false;
+    const std::uint64_t diagonal = points_of(c, d);
+    if (mesh_.vertices[c].point == mesh_.vertices[d].point || joined_.contains(diagonal)) return false;
     const std::array<mesh::Triangle, 2> before{one, two}, after{mesh::Triangle{c, a, d}, mesh::Triangle{d, b, c}};
     const int sign = draft_.atlas_orientation(one);
     const Vec3d normal = draft_.area_normal(one) + draft_.area_normal(two);
@@ -70,21 +72,22 @@ private:
       const Vec3d n = draft_.area_normal(triangle);
       if (!draft_.is_sound(triangle, sign) || !(dot(n, normal) > least_cosine * norm(n) * norm(normal))) return false;
     }
-    std::vector<std::uint32_t> numbers = draft_.witnesses_of(s.triangle);
-    const std::vector<std::uint32_t>& others = draft_.witnesses_of(t.triangle);
-    numbers.insert(numbers.end(), others.begin(), others.end());
-    if (!(draft_.energy(numbers, after) < (1 - least_gain) * draft_.energy(numbers, before))) return false;
+    const std::array numbers{s.triangle, t.triangle};
+    draft_.collect(numbers, held_);
+    const double energy = draft_.energy(held_, before);
+    if (!(draft_.energy(held_, after) < (1 - least_gain) * energy)) return false;
     mesh_.triangles[s.triangle] = after[0];
     mesh_.triangles[t.triangle] = after[1];
     joined_.erase(points_of(a, b));
     joined_.insert(diagonal);
-    draft_.sort_again(std::array{s.triangle, t.triangle});
+    draft_.hand_over(held_, numbers);
     return true;
   }
 
   Draft& draft_;
   texture::CutMesh& mesh_;
-  std::set<Pair> joined_; // points
+  std::unordered_set<std::uint64_t> joined_; // pairs of points
+  std::vector<Held> held_;
 };
 
 } // namespace

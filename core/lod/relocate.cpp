@@ -16,6 +16,7 @@ constexpr double least_gain = 1e-3;   // of the deviation
 constexpr int most_halvings = 2;      // of Newton's step
 constexpr double least_cosine = 0.2;  // of the angle by which a triangle may turn
 constexpr std::size_t least_data = 4; // witnesses
+constexpr std::size_t check_interval = 1024;
 
 class Relocation {
 public:
@@ -26,9 +27,11 @@ public:
     for (const texture::CutVertex& v : mesh_.vertices) ++copies_[v.point];
   }
 
-  void run() {
-    for (mesh::Index v = 0; v < mesh_.vertices.size(); ++v)
+  void run(const Progress& progress) {
+    for (mesh::Index v = 0; v < mesh_.vertices.size(); ++v) {
+      if (v % check_interval == 0) progress.check();
       if (is_free(v)) move(v);
+    }
   }
 
 private:
@@ -50,7 +53,9 @@ private:
 
   // r = sum_k w_k p_k - P at a witness. To move v in the atlas by d slides the level's map under the witness:
   // with the Jacobian J of the triangle's map, dr = w_v (dp - J d).
-  [[nodiscard]] std::optional<Vector5> newton_step(mesh::Index v) {
+  // `energy` becomes the sum of the deviations as they are.
+  [[nodiscard]] std::optional<Vector5> newton_step(mesh::Index v, double& energy) {
+    energy = 0;
     Matrix5 h = Matrix5::Zero();
     Vector5 g = Vector5::Zero();
     const double scale = draft_.full().uv_scale();
@@ -63,11 +68,13 @@ private:
       const Vec3d e1 = draft_.positions[t[1]] - draft_.positions[t[0]];
       const Vec3d e2 = draft_.positions[t[2]] - draft_.positions[t[0]];
       const Vec3d j0 = (e1 * cy - e2 * by) * (1 / area), j1 = (e2 * bx - e1 * cx) * (1 / area);
+      const AtlasTriangle in_atlas = draft_.in_atlas(t);
       for (const std::uint32_t i : draft_.witnesses_of(number)) {
         const Witness& witness = draft_.witness(i);
-        const std::array<double, 3> w = draft_.weights_in(t, witness.uv);
+        const std::array<double, 3> w = in_atlas.weights(witness.uv);
         const Vec3d r = draft_.positions[t[0]] * w[0] + draft_.positions[t[1]] * w[1] + draft_.positions[t[2]] * w[2] -
                         witness.position;
+        energy += witness.deviation(r + witness.position);
         add(witness, r, w[0], {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}, -j0, -j1}, h, g);
       }
     }
@@ -99,13 +106,10 @@ private:
   }
 
   void move(mesh::Index v) {
-    numbers_.clear();
-    for (const std::uint32_t t : stars_[v]) {
-      const auto& own = draft_.witnesses_of(t);
-      numbers_.insert(numbers_.end(), own.begin(), own.end());
-    }
-    if (numbers_.size() < least_data) return;
-    const std::optional<Vector5> step = newton_step(v);
+    draft_.collect(stars_[v], held_);
+    if (held_.size() < least_data) return;
+    double energy = 0;
+    const std::optional<Vector5> step = newton_step(v, energy);
     if (!step) return;
     triangles_.clear();
     normals_.clear();
@@ -115,13 +119,13 @@ private:
     }
     const texture::CutVertex before = mesh_.vertices[v];
     const Vec3d position = draft_.positions[v];
-    const double most = (1 - least_gain) * draft_.energy(numbers_, triangles_);
+    const double most = (1 - least_gain) * energy;
     const int sign = draft_.atlas_orientation(triangles_[0]);
     for (int halvings = 0; halvings <= most_halvings; ++halvings) {
       const double length = std::ldexp(1, -halvings);
-      if (put(v, before, position, *step * length) && is_sound(sign) && draft_.energy(numbers_, triangles_) < most) {
+      if (put(v, before, position, *step * length) && is_sound(sign) && draft_.energy(held_, triangles_) < most) {
         draft_.level().near[v] = near_;
-        draft_.sort_again(stars_[v]);
+        draft_.hand_over(held_, stars_[v]);
         return;
       }
     }
@@ -159,7 +163,7 @@ private:
   std::vector<std::vector<std::uint32_t>> stars_; // by vertex: the triangles around it
   std::vector<std::uint32_t> copies_;             // by point: its vertices
   // Of the vertex in work:
-  std::vector<std::uint32_t> numbers_; // witnesses around it
+  std::vector<Held> held_; // witnesses around it
   std::vector<mesh::Index> ring_;
   std::vector<mesh::Triangle> triangles_;
   std::vector<Vec3d> normals_;
@@ -168,6 +172,6 @@ private:
 
 } // namespace
 
-void relocate(Draft& draft) { Relocation(draft).run(); }
+void relocate(Draft& draft, const Progress& progress) { Relocation(draft).run(progress); }
 
 } // namespace orbis::lod

@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/lod/chart_map.h"
+#include "core/texture/bands.h"
 #include "core/texture/raster.h"
 
 namespace orbis::lod {
@@ -15,6 +17,7 @@ constexpr std::uint32_t subpixels = 2; // along each side of a pixel
 
 struct View {
   Vec3d right, up, towards; // the viewer
+  Vec3d light;              // where it comes from, unit
 };
 
 View view_of(std::size_t number) {
@@ -24,7 +27,8 @@ View view_of(std::size_t number) {
   const std::array<Vec3d, 3> axes{x, y, z};
   const double sign = number % 2 == 0 ? 1 : -1;
   const Vec3d towards = axes[number / 2 % 3] * sign, right = axes[(number / 2 + 1) % 3];
-  return {right, cross(towards, right), towards};
+  const Vec3d up = cross(towards, right);
+  return {right, up, towards, normalized(towards * 0.8 + right * -0.4 + up * 0.45)};
 }
 
 struct Fragment {
@@ -33,47 +37,87 @@ struct Fragment {
   float b = 0, c = 0; // weights of the second and the third corner
 };
 
-// Positions within the ball of diameter 1 around 0.
-std::vector<Fragment> visible(std::span<const Vec3d> positions, std::span<const mesh::Triangle> triangles,
-                              const View& view, std::uint32_t size) {
-  std::vector<Fragment> fragments(std::size_t{size} * size);
-  std::vector<Vec3d> seen;
-  seen.reserve(positions.size());
-  for (const Vec3d& p : positions)
-    seen.emplace_back(size * (0.5 + dot(p, view.right)), size * (0.5 - dot(p, view.up)), dot(p, view.towards));
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    const Vec3d &a = seen[triangles[t][0]], &b = seen[triangles[t][1]], &c = seen[triangles[t][2]];
-    texture::rasterize({{{a.x, a.y}, {b.x, b.y}, {c.x, c.y}}}, size, size,
-                       [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>& w) {
-                         Fragment& f = fragments[std::size_t{y} * size + x];
-                         const auto depth = static_cast<float>(w[0] * a.z + w[1] * b.z + w[2] * c.z);
-                         if (depth > f.depth) f = {t, depth, static_cast<float>(w[1]), static_cast<float>(w[2])};
-                       });
+// What is seen of a surface, some rows at a time: those stay in a processor's cache, the whole picture does not.
+class Viewfinder {
+public:
+  static constexpr std::uint32_t rows = 16 * subpixels; // of a band
+
+  // Positions within the ball of diameter 1 around 0; size: subpixels along each side.
+  Viewfinder(std::span<const Vec3d> positions, std::span<const mesh::Triangle> triangles, const View& view,
+             std::uint32_t size)
+      : triangles_(triangles), size_(size), seen_(seen_from(positions, view, size)),
+        bands_(all(triangles.size()), size, rows, [&](std::uint32_t t) { return corners(t); }) {}
+
+  [[nodiscard]] std::size_t bands() const { return bands_.count(); }
+
+  // The fragments of a band's rows, one after the other.
+  [[nodiscard]] const std::vector<Fragment>& band(std::size_t number) {
+    const std::uint32_t top = static_cast<std::uint32_t>(number) * rows, height = std::min(rows, size_ - top);
+    fragments_.assign(std::size_t{height} * size_, {});
+    for (const std::uint32_t t : bands_[number]) {
+      std::array<texture::RasterPoint, 3> p = corners(t);
+      for (texture::RasterPoint& corner : p) corner.y -= top;
+      const auto& [a, b, c] = triangles_[t];
+      const double za = seen_[a].z, zb = seen_[b].z, zc = seen_[c].z;
+      texture::rasterize(p, size_, height, [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>& w) {
+        Fragment& f = fragments_[std::size_t{y} * size_ + x];
+        const auto depth = static_cast<float>(w[0] * za + w[1] * zb + w[2] * zc);
+        if (depth > f.depth) f = {t, depth, static_cast<float>(w[1]), static_cast<float>(w[2])};
+      });
+    }
+    return fragments_;
   }
-  return fragments;
-}
+
+private:
+  static std::vector<Vec3d> seen_from(std::span<const Vec3d> positions, const View& view, std::uint32_t size) {
+    std::vector<Vec3d> seen;
+    seen.reserve(positions.size());
+    for (const Vec3d& p : positions)
+      seen.emplace_back(size * (0.5 + dot(p, view.right)), size * (0.5 - dot(p, view.up)), dot(p, view.towards));
+    return seen;
+  }
+  static std::vector<std::uint32_t> all(std::size_t count) {
+    std::vector<std::uint32_t> numbers(count);
+    std::iota(numbers.begin(), numbers.end(), 0U);
+    return numbers;
+  }
+  [[nodiscard]] std::array<texture::RasterPoint, 3> corners(std::uint32_t t) const {
+    std::array<texture::RasterPoint, 3> out;
+    for (std::size_t k = 0; k < 3; ++k) out[k] = {seen_[triangles_[t][k]].x, seen_[triangles_[t][k]].y};
+    return out;
+  }
+
+  std::span<const mesh::Triangle> triangles_;
+  std::uint32_t size_;
+  std::vector<Vec3d> seen_;
+  texture::Bands bands_;
+  std::vector<Fragment> fragments_;
+};
 
 float lit(const Vec3d& normal, const View& view) {
-  const Vec3d light = normalized(view.towards * 0.8 + view.right * -0.4 + view.up * 0.45);
-  const double length = norm(normal);
-  const double cosine = length > 0 ? dot(normal, light) / length : 0;
-  return static_cast<float>(0.1 + 0.9 * std::max(cosine, 0.0));
+  const double cosine = dot(normal, view.light), squared_length = squared_norm(normal);
+  return static_cast<float>(cosine > 0 ? 0.1 + 0.9 * cosine / std::sqrt(squared_length) : 0.1);
 }
 
 // normal_at(triangle, weights) for every subpixel that shows a triangle; a pixel is their mean if all do.
 template <class NormalAt>
-Picture shade(const std::vector<Fragment>& fragments, const View& view, std::uint32_t size, const NormalAt& normal_at) {
+Picture shade(Viewfinder& finder, const View& view, std::uint32_t size, const NormalAt& normal_at) {
   Picture picture{size, std::vector<float>(std::size_t{size} * size, background)};
-  for (std::size_t pixel = 0; pixel < picture.light.size(); ++pixel) {
-    const std::size_t x = pixel % size * subpixels, y = pixel / size * subpixels;
-    float sum = 0;
-    bool is_covered = true;
-    for (std::size_t i = 0; i < subpixels * subpixels && is_covered; ++i) {
-      const Fragment& f = fragments[(y + i / subpixels) * size * subpixels + x + i % subpixels];
-      is_covered = f.triangle != none;
-      if (is_covered) sum += lit(normal_at(f.triangle, std::array<double, 3>{1.0 - f.b - f.c, f.b, f.c}), view);
+  const std::size_t width = std::size_t{size} * subpixels;
+  for (std::size_t band = 0; band < finder.bands(); ++band) {
+    const std::vector<Fragment>& fragments = finder.band(band);
+    float* const light = &picture.light[band * (Viewfinder::rows / subpixels) * size];
+    for (std::size_t pixel = 0; pixel < fragments.size() / (subpixels * subpixels); ++pixel) {
+      const std::size_t x = pixel % size * subpixels, y = pixel / size * subpixels;
+      float sum = 0;
+      bool is_covered = true;
+      for (std::size_t i = 0; i < subpixels * subpixels && is_covered; ++i) {
+        const Fragment& f = fragments[(y + i / subpixels) * width + x + i % subpixels];
+        is_covered = f.triangle != none;
+        if (is_covered) sum += lit(normal_at(f.triangle, std::array<double, 3>{1.0 - f.b - f.c, f.b, f.c}), view);
+      }
+      if (is_covered) light[pixel] = sum / (subpixels * subpixels);
     }
-    if (is_covered) picture.light[pixel] = sum / (subpixels * subpixels);
   }
   return picture;
 }
@@ -103,7 +147,8 @@ Picture Photographer::of(const Sitter& sitter, std::size_t view) const {
   std::vector<Vec3d> positions;
   positions.reserve(sitter.positions.size());
   for (const Vec3f& p : sitter.positions) positions.push_back((Vec3d(p) - centre_) * scale_);
-  return shade(visible(positions, sitter.triangles, from, subpixels * size_), from, size_, sitter.normal_at);
+  Viewfinder finder(positions, sitter.triangles, from, subpixels * size_);
+  return shade(finder, from, size_, sitter.normal_at);
 }
 
 double Photographer::psnr(const Sitter& level) const {

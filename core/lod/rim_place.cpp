@@ -13,8 +13,8 @@ HalfPlane HalfPlane::beside(const Uv& a, const Uv& b, int sign, double margin) {
 
 std::optional<Uv> best_place_within(const DeviationQuadric::Reduced& model, const Uv& from,
                                     std::span<const HalfPlane> allowed) {
-  const auto& [g0, g1] = model.gradient;
-  const auto& [h00, h01, h11] = model.hessian;
+  const double g0 = model.gradient[0], g1 = model.gradient[1];
+  const double h00 = model.hessian[0], h01 = model.hessian[1], h11 = model.hessian[2];
   const double determinant = h00 * h11 - h01 * h01;
   if (!(determinant > 0)) return std::nullopt;
   std::optional<Uv> best;

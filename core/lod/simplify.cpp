@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <future>
 #include <limits>
-#include <queue>
+#include <optional>
 
+#include "core/lod/bucket_queue.h"
 #include "core/lod/collapse.h"
 #include "core/lod/drop_components.h"
 #include "core/lod/extract.h"
 #include "core/lod/refine.h"
+#include "core/mesh/thread_pool.h"
 
 namespace orbis::lod {
 namespace {
@@ -17,6 +20,7 @@ namespace {
 constexpr double speck = 0.01; // of the diagonal: a component below that goes before a seam is torn
 constexpr double any_size = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t report_interval = 1U << 12U;
+constexpr std::size_t grain = 1024; // points
 
 // The next edge to collapse, valid as long as neither end has changed.
 struct Candidate {
@@ -24,18 +28,13 @@ struct Candidate {
   std::uint32_t a, b;
   std::uint32_t versions; // of both ends, added
   std::uint32_t attempt;
-
-  // Greater means later; equal costs go by the edge, so that the order is one.
-  friend bool operator>(const Candidate& x, const Candidate& y) {
-    if (x.cost != y.cost) return x.cost > y.cost;
-    return x.a != y.a ? x.a > y.a : x.b > y.b;
-  }
 };
 
 class Simplifier {
 public:
-  Simplifier(const FullSurface& full, double gutter, Progress& progress)
-      : full_(full), gutter_(gutter), progress_(progress), mesh_(full), collapser_(full, mesh_) {
+  Simplifier(const FullSurface& full, double gutter, std::uint32_t threads, Progress& progress)
+      : full_(full), gutter_(gutter), progress_(progress), threads_(threads), mesh_(full, threads_),
+        collapser_(full, mesh_) {
     first_count_ = mesh_.triangle_count;
     fill_queue();
   }
@@ -52,7 +51,6 @@ public:
     for (const Point& p : mesh_.points)
       if (p.is_alive) concessions_.outline = std::max(concessions_.outline, double{p.drift});
     Level level = extract(full_, mesh_);
-    refine(full_, level);
     level.concessions = concessions_;
     level.deviation = std::sqrt(largest_);
     return level;
@@ -62,25 +60,35 @@ private:
   [[nodiscard]] bool is_met(const Target& target) const { return mesh_.triangle_count <= target.triangles; }
 
   void fill_queue() {
-    queue_ = {};
     collapsed_since_filled_ = 0;
-    std::vector<std::uint32_t> ring;
-    for (std::uint32_t p = 0; p < mesh_.points.size(); ++p) {
-      if (!mesh_.points[p].is_alive) continue;
-      mesh_.neighbours_of(p, ring);
-      for (const std::uint32_t q : ring)
-        if (p < q) push(p, q, 0);
-    }
+    std::vector<std::vector<Candidate>> found((mesh_.points.size() + grain - 1) / grain);
+    threads_.for_blocks(mesh_.points.size(), grain, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> ring;
+      for (auto p = static_cast<std::uint32_t>(begin); p < end; ++p) {
+        if (!mesh_.points[p].is_alive) continue;
+        mesh_.neighbours_of(p, ring);
+        for (const std::uint32_t q : ring) {
+          const std::optional<Candidate> candidate = p < q ? candidate_of(p, q, 0) : std::nullopt;
+          if (candidate) found[begin / grain].push_back(*candidate);
+        }
+      }
+    });
+    queue_.clear();
+    for (const std::vector<Candidate>& block : found)
+      for (const Candidate& candidate : block) queue_.push(candidate);
+  }
+
+  // The first attempt from `attempt` on that is possible.
+  [[nodiscard]] std::optional<Candidate> candidate_of(std::uint32_t a, std::uint32_t b, std::uint32_t attempt) const {
+    if (a > b) std::swap(a, b);
+    for (; attempt < Collapser::attempts; ++attempt)
+      if (const std::optional<Collapse> collapse = collapser_.propose(a, b, attempt))
+        return Candidate{static_cast<float>(collapse->cost), a, b, versions(a, b), attempt};
+    return std::nullopt;
   }
 
   void push(std::uint32_t a, std::uint32_t b, std::uint32_t attempt) {
-    if (a > b) std::swap(a, b);
-    for (; attempt < Collapser::attempts; ++attempt) {
-      const std::optional<Collapse> collapse = collapser_.propose(a, b, attempt);
-      if (!collapse) continue;
-      queue_.push({static_cast<float>(collapse->cost), a, b, versions(a, b), attempt});
-      return;
-    }
+    if (const std::optional<Candidate> candidate = candidate_of(a, b, attempt)) queue_.push(*candidate);
   }
 
   [[nodiscard]] std::uint32_t versions(std::uint32_t a, std::uint32_t b) const {
@@ -89,14 +97,11 @@ private:
 
   // Takes the next candidate; false where there is none or the bound forbids it.
   bool step(const Target& target) {
-    if (queue_.empty()) return false;
+    if (queue_.is_empty()) return false;
     const Candidate next = queue_.top();
     const bool is_alive = mesh_.points[next.a].is_alive && mesh_.points[next.b].is_alive;
-    if (!is_alive || next.versions != versions(next.a, next.b)) {
-      queue_.pop();
-      return true;
-    }
-    const std::optional<Collapse> collapse = collapser_.propose(next.a, next.b, next.attempt);
+    const bool is_valid = is_alive && next.versions == versions(next.a, next.b);
+    const std::optional<Collapse> collapse = is_valid ? collapser_.propose(next.a, next.b, next.attempt) : std::nullopt;
     if (!collapse) {
       queue_.pop();
       return true;
@@ -168,10 +173,11 @@ private:
   const FullSurface& full_;
   double gutter_;
   Progress& progress_;
+  mesh::ThreadPool threads_;
   WedgeMesh mesh_;
   Collapser collapser_;
   Concessions concessions_;
-  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
+  BucketQueue<Candidate> queue_;
   std::vector<std::uint32_t> ring_;
   std::uint64_t first_count_ = 0, collapses_ = 0, collapsed_since_filled_ = 0;
   double largest_ = 0;
@@ -181,11 +187,16 @@ private:
 } // namespace
 
 std::vector<Level> simplify(const FullSurface& full, std::span<const Target> targets, double gutter,
-                            Progress& progress) {
-  Simplifier simplifier(full, gutter, progress);
-  std::vector<Level> levels;
-  levels.reserve(targets.size());
-  for (const Target& target : targets) levels.push_back(simplifier.next(target));
+                            std::uint32_t threads, Progress& progress) {
+  Simplifier simplifier(full, gutter, threads, progress);
+  std::vector<Level> levels(targets.size());
+  const auto when = threads == 1 ? std::launch::deferred : std::launch::async;
+  std::vector<std::future<void>> touches; // after the levels: they end before those do
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    levels[i] = simplifier.next(targets[i]);
+    touches.push_back(std::async(when, [&full, &progress, &level = levels[i]] { refine(full, level, progress); }));
+  }
+  for (std::future<void>& touch : touches) touch.get();
   return levels;
 }
 

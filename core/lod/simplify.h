@@ -52,8 +52,10 @@ struct Level {
 // bit. A component keeps its topology, and its seams their lines, until a target cannot be met otherwise: Concessions
 // says what gives way. No level is empty.
 //
-// O(n log n). One thread, deterministic. Reports Stage::levels; throws Error{canceled}.
+// O(n log n). The collapses take one thread; the last touch of a level (refine.h) runs beside those for the next one if
+// `threads` (0: as many as the machine has) allows it. The same bits with any number. Reports Stage::levels; throws
+// Error{canceled}.
 [[nodiscard]] std::vector<Level> simplify(const FullSurface& full, std::span<const Target> targets, double gutter,
-                                          Progress& progress);
+                                          std::uint32_t threads, Progress& progress);
 
 } // namespace orbis::lod

@@ -8,7 +8,8 @@ namespace {
 // Where the map from the atlas stretches far more than elsewhere, it says little about its neighbourhood: beyond this
 // many times the mean stretch the slip counts less.
 constexpr double usual_stretch = 4;
-constexpr double wall_weight = 1; // of the squared distance from a rim's edge, times the edge's squared length
+constexpr std::size_t grain = 1024; // points
+constexpr double wall_weight = 1;   // of the squared distance from a rim's edge, times the edge's squared length
 
 DeviationQuadric quadric_of(const FullSurface& full, std::uint32_t t) {
   const auto& [ia, ib, ic] = full.cut().triangles[t];
@@ -34,10 +35,10 @@ DeviationQuadric quadric_of(const FullSurface& full, std::uint32_t t) {
 
 } // namespace
 
-WedgeMesh::WedgeMesh(const FullSurface& full) {
+WedgeMesh::WedgeMesh(const FullSurface& full, mesh::ThreadPool& threads) {
   make_wedges(full);
   list_corners();
-  classify();
+  classify(threads);
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     const DeviationQuadric q = quadric_of(full, t);
     for (const std::uint32_t w : triangles[t]) quadrics[w] += q;
@@ -52,6 +53,7 @@ void WedgeMesh::make_wedges(const FullSurface& full) {
   points.resize(cut.points);
   parent.assign(cut.parent.begin(), cut.parent.end());
   triangles.reserve(cut.triangles.size());
+  corner_points.reserve(cut.triangles.size());
   std::vector<std::uint32_t> first(cut.points, none), next;
   const auto wedge_of = [&](mesh::Index v, std::uint32_t t) {
     const texture::CutVertex& vertex = cut.vertices[v];
@@ -71,6 +73,7 @@ void WedgeMesh::make_wedges(const FullSurface& full) {
   for (std::uint32_t t = 0; t < cut.triangles.size(); ++t) {
     const auto& [a, b, c] = cut.triangles[t];
     triangles.push_back({wedge_of(a, t), wedge_of(b, t), wedge_of(c, t)});
+    corner_points.push_back({cut.vertices[a].point, cut.vertices[b].point, cut.vertices[c].point});
   }
   for (std::uint32_t p = 0; p < points.size(); ++p) {
     if (points[p].joint == none) continue;
@@ -92,22 +95,24 @@ void WedgeMesh::list_corners() {
   }
 }
 
-void WedgeMesh::classify() {
-  std::vector<std::uint32_t> ring;
-  for (std::uint32_t p = 0; p < points.size(); ++p) {
-    points[p].is_alive = points[p].first_corner != none;
-    neighbours_of(p, ring);
-    int seams = 0;
-    bool is_regular = true;
-    for (const std::uint32_t q : ring) {
-      const std::optional<EdgeSides> sides = sides_of(p, q);
-      is_regular = is_regular && sides.has_value();
-      seams += sides && sides->is_seam() ? 1 : 0;
+void WedgeMesh::classify(mesh::ThreadPool& threads) {
+  threads.for_blocks(points.size(), grain, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> ring;
+    for (auto p = static_cast<std::uint32_t>(begin); p < end; ++p) {
+      points[p].is_alive = points[p].first_corner != none;
+      neighbours_of(p, ring);
+      int seams = 0;
+      bool is_regular = true;
+      for (const std::uint32_t q : ring) {
+        const std::optional<EdgeSides> sides = sides_of(p, q);
+        is_regular = is_regular && sides.has_value();
+        seams += sides && sides->is_seam() ? 1 : 0;
+      }
+      if (seams == 0 && is_regular && !points[p].is_joint) continue;
+      const bool may_go = !points[p].is_joint || points[p].joint != none;
+      points[p].kind = seams == 2 && is_regular && may_go ? PointKind::seam : PointKind::fixed;
     }
-    if (seams == 0 && is_regular && !points[p].is_joint) continue;
-    const bool may_go = !points[p].is_joint || points[p].joint != none;
-    points[p].kind = seams == 2 && is_regular && may_go ? PointKind::seam : PointKind::fixed;
-  }
+  });
 }
 
 // Where the surface ends nothing but its rim says where: planes through its edges, across the surface (Garland and
@@ -187,13 +192,13 @@ std::optional<EdgeSides> WedgeMesh::sides_of(std::uint32_t a, std::uint32_t b) c
   EdgeSides sides;
   std::size_t found = 0;
   for_each_corner(a, [&](std::uint32_t corner) {
-    const mesh::Triangle& t = triangles[corner / 3];
+    const mesh::Triangle& at = corner_points[corner / 3];
     for (std::size_t k = 1; k < 3; ++k) {
-      const std::uint32_t other = t[(corner % 3 + k) % 3];
-      if (wedges[other].point != b) continue;
+      const std::size_t other = (corner % 3 + k) % 3;
+      if (at[other] != b) continue;
       if (found < 2) {
-        sides.at_a[found] = t[corner % 3];
-        sides.at_b[found] = other;
+        sides.at_a[found] = triangles[corner / 3][corner % 3];
+        sides.at_b[found] = triangles[corner / 3][other];
         sides.triangle[found] = corner / 3;
       }
       ++found;
@@ -274,6 +279,7 @@ void WedgeMesh::contract(std::uint32_t removed, std::uint32_t kept, const EdgeSi
         else if (wedge == from[1])
           wedge = into[1];
         wedges[wedge].point = kept;
+        corner_points[c / 3][c % 3] = kept;
         *link = c;
         link = &next_corner_[c];
       }

@@ -8,6 +8,7 @@
 
 #include "core/lod/deviation_quadric.h"
 #include "core/lod/full_surface.h"
+#include "core/mesh/thread_pool.h"
 
 namespace orbis::lod {
 
@@ -45,20 +46,19 @@ struct EdgeSides {
 // Corner 3 t + k is corner k of triangle t.
 class WedgeMesh {
 public:
-  explicit WedgeMesh(const FullSurface& full);
+  WedgeMesh(const FullSurface& full, mesh::ThreadPool& threads);
 
   std::vector<Point> points;
   std::vector<Wedge> wedges;
   std::vector<DeviationQuadric> quadrics;           // one per wedge
   std::vector<mesh::Triangle> triangles;            // wedges
+  std::vector<mesh::Triangle> corner_points;        // triangle -> the points of its wedges: walks need nothing else
   std::vector<std::uint32_t> parent;                // triangle -> triangle of the welded surface
   std::vector<bool> is_alive;                       // by triangle
   std::uint64_t triangle_count = 0;                 // of those alive
   std::vector<std::vector<std::uint32_t>> at_joint; // joint -> the points there
 
-  [[nodiscard]] std::uint32_t point_at(std::uint32_t corner) const {
-    return wedges[triangles[corner / 3][corner % 3]].point;
-  }
+  [[nodiscard]] std::uint32_t point_at(std::uint32_t corner) const { return corner_points[corner / 3][corner % 3]; }
   // Calls visit(corner) for each triangle around a point.
   template <class Visit> void for_each_corner(std::uint32_t point, Visit visit) const {
     for (std::uint32_t c = points[point].first_corner; c != none; c = next_corner_[c])
@@ -98,7 +98,7 @@ public:
 private:
   void make_wedges(const FullSurface& full);
   void list_corners();
-  void classify();
+  void classify(mesh::ThreadPool& threads);
   void wall_borders();
   [[nodiscard]] bool is_hole_of_three(std::uint32_t a, std::uint32_t b, const EdgeSides& sides) const;
 

@@ -21,8 +21,7 @@ std::vector<double> edge_lengths(const Vec3d& centre, std::span<const Vec3d> rin
   std::vector<double> length(ring.size());
   std::transform(ring.begin(), ring.end(), length.begin(), [&](const Vec3d& q) { return norm(q - centre); });
   const double longest = *std::max_element(length.begin(), length.end());
-  if (longest == 0) return std::vector<double>(ring.size(), 1.0);
-  for (double& l : length) l = std::max(l / longest, degeneracy);
+  for (double& l : length) l = longest == 0 ? 1 : std::max(l / longest, degeneracy);
   return length;
 }
 
@@ -41,7 +40,10 @@ std::vector<double> flattened_angles(const Vec3d& centre, std::span<const Vec3d>
     }
   }
   const double sum = std::accumulate(angle.begin(), angle.end(), 0.0);
-  if (sum == 0) return std::vector<double>(d, 2 * std::numbers::pi / static_cast<double>(d));
+  if (sum == 0) {
+    std::fill(angle.begin(), angle.end(), 2 * std::numbers::pi / static_cast<double>(d));
+    return angle;
+  }
   const double least = degeneracy * sum / static_cast<double>(d), most = 0.5 * sum * (1 - degeneracy);
   for (double& a : angle) a = std::clamp(a, least, most);
   const double scale = 2 * std::numbers::pi / std::accumulate(angle.begin(), angle.end(), 0.0);
@@ -72,7 +74,8 @@ std::vector<double> floater_weights(const Vec3d& centre, std::span<const Vec3d> 
   std::size_t turns = 0; // r = turns mod d, counted from neighbour 0
   for (std::size_t l = 0; l < d; ++l) {
     const auto angle_from_l = [&](std::size_t k) {
-      return star.direction[k % d] + 2 * pi * static_cast<double>(k / d) - star.direction[l];
+      const std::size_t turn = k / d;
+      return star.direction[k % d] + 2 * pi * static_cast<double>(turn) - star.direction[l];
     };
     turns = std::max(turns, l + 1);
     while (turns + 2 < l + d && angle_from_l(turns + 1) <= pi) ++turns;

@@ -48,7 +48,7 @@ void NewtonLevel::assemble() {
       if (column == 0) matrix_.insertBack(j + 1, j) = double{own[2]};
       for (const auto& [u, block] : neighbours) {
         const auto i = static_cast<Eigen::Index>(2 * std::size_t{u});
-        const auto first = static_cast<std::size_t>(2 * column); // the block's row is v: it is seen from the other side
+        const std::size_t first = column == 0 ? 0 : 2; // the block's row is v: it is seen from the other side
         matrix_.insertBack(i, j) = double{(*block)[first]};
         matrix_.insertBack(i + 1, j) = double{(*block)[first + 1]};
       }

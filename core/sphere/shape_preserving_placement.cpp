@@ -24,7 +24,8 @@ Vec3d insertion_place(const Star& star, std::size_t parent, std::size_t left, st
 
   Vec3d best = v;
   double least = std::numeric_limits<double>::infinity();
-  for (double distance = 0.5 * nearest; distance > 1e-16; distance *= 0.5) {
+  double distance = nearest;
+  while ((distance *= 0.5) > 1e-16) {
     const Vec3d candidate = normalized(v + towards * distance);
     const double energy = star_energy(star, candidate, floor);
     if (energy < least) {

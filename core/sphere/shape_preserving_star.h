@@ -30,7 +30,7 @@ struct Star {
 
 // theta^2 for two unit vectors with the squared chord c = |p - q|^2 = 4 sin^2(theta / 2). Keeps full relative precision
 // for small angles, where arccos(p . q) has none.
-[[nodiscard]] double squared_angle(double squared_chord);
+[[nodiscard]] double squared_angle(double c);
 
 // ds(p) with the vertex at p, a unit vector; the safeguard left out.
 [[nodiscard]] double angle_energy(const Star& star, const Vec3d& p);

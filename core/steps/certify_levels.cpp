@@ -58,7 +58,7 @@ public:
         std::array<Vec2f, 3> corner;
         for (std::size_t k = 0; k < 3; ++k) {
           const std::uint32_t v = read.indices[3 * t + k];
-          piece.on_sphere.positions.push_back(Vec3f(asset::vector_at(sphere, v)));
+          piece.on_sphere.positions.emplace_back(asset::vector_at(sphere, v));
           corner[k] = {static_cast<float>(uv->get(v, 0)), static_cast<float>(uv->get(v, 1))};
         }
         piece.on_sphere.triangles.push_back({first, first + 1, first + 2});

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <future>
 #include <string>
 
 #include "core/lod/distance.h"
@@ -128,11 +129,13 @@ std::vector<DetailLevel> make_levels(const asset::Asset& asset, const Surface& s
   std::vector<DetailLevel> out;
   if (report.options.lods.empty()) return out;
   const lod::FullSurface full(surface.mesh, surface.primitive_of, cut);
-  std::vector<lod::Level> levels =
-      lod::simplify(full, targets_of(report.options, surface), gutter_in_uv(cut), progress);
-
   mesh::ThreadPool threads(report.options.threads);
-  const lod::Ruler ruler(full, threads);
+  // The ruler has its tree by the time when there is something to measure.
+  std::future<lod::Ruler> made = std::async(threads.size() == 1 ? std::launch::deferred : std::launch::async,
+                                            [&full, &threads] { return lod::Ruler(full, threads); });
+  std::vector<lod::Level> levels =
+      lod::simplify(full, targets_of(report.options, surface), gutter_in_uv(cut), report.options.threads, progress);
+  const lod::Ruler ruler = made.get();
   double coverage = 1;
   for (std::size_t i = 0; i < levels.size(); ++i) {
     progress.check();
@@ -150,7 +153,8 @@ std::vector<DetailLevel> make_levels(const asset::Asset& asset, const Surface& s
     facts.reached = !c.is_short;
     note_concessions(facts, "/levels/" + std::to_string(i), report);
 
-    DetailLevel& level = out.emplace_back(std::move(levels[i]), Delivery{});
+    out.push_back({std::move(levels[i]), {}});
+    DetailLevel& level = out.back();
     level.delivery = make_delivery(asset, surface, level.level.mesh, RiderPolicy::leave_out);
     place(level.level, level.delivery);
     for (const auto& sources : level.delivery.sources) facts.vertices += sources.size();

@@ -85,7 +85,7 @@ VertexFrame SmoothFrames::at(std::uint32_t chart, const Vec2f& uv) const {
            static_cast<float>(spline.handedness)}};
 }
 
-std::vector<SmoothFrames::Sample> SmoothFrames::samples_of(const Chart& chart, const FrameField& field) const {
+std::vector<SmoothFrames::Sample> SmoothFrames::samples_of(const Chart& chart, const FrameField& field) {
   std::vector<Sample> out;
   const std::uint32_t across = std::min(chart.width, samples_a_side), down = std::min(chart.height, samples_a_side);
   for (std::uint32_t j = 0; j < down; ++j) {

@@ -36,7 +36,7 @@ private:
     double handedness = 1;
   };
   struct Sample;
-  [[nodiscard]] std::vector<Sample> samples_of(const Chart& chart, const FrameField& field) const;
+  [[nodiscard]] static std::vector<Sample> samples_of(const Chart& chart, const FrameField& field);
   static Spline fitted(const std::vector<Sample>& samples, std::uint32_t cells);
   [[nodiscard]] static bool is_regular(const Spline& spline);
 

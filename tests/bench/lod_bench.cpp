@@ -142,7 +142,7 @@ void measure(const std::string& path, const Arguments& arguments) {
   std::clock_t start = std::clock();
   const lod::FullSurface full(surface, primitive_of, cut);
   const double gutter = static_cast<double>(cut.gutter) / cut.pages[0].width;
-  const std::vector<lod::Level> levels = lod::simplify(full, targets, gutter, progress);
+  const std::vector<lod::Level> levels = lod::simplify(full, targets, gutter, 0, progress);
   const double simplification = milliseconds_since(start);
 
   mesh::ThreadPool threads(0);

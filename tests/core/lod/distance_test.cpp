@@ -34,7 +34,7 @@ double sampled_distance(const Vec3d& p, const std::array<Vec3d, 3>& t) {
 lod::Level whole(const lod_tests::World& world) {
   NoProgress progress;
   const std::vector<lod::Target> all{{world.cut.triangles.size(), 0}};
-  return lod::simplify(world.full(), all, 0, progress).front();
+  return lod::simplify(world.full(), all, 0, 0, progress).front();
 }
 
 } // namespace
@@ -114,7 +114,7 @@ TEST_CASE("fitted positions are closer to the full surface than those that were 
   const lod::FullSurface full = world.full();
   NoProgress progress;
   const std::vector<lod::Target> targets{{400, 0}};
-  lod::Level level = lod::simplify(full, targets, 0, progress).front();
+  lod::Level level = lod::simplify(full, targets, 0, 0, progress).front();
   mesh::ThreadPool threads(1);
   const lod::Ruler ruler(full, threads);
   const double before = ruler.texture_deviation(level).mean;

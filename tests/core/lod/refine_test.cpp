@@ -19,7 +19,7 @@ namespace {
 lod::Level level_of(const World& world, const lod::FullSurface& full, std::uint64_t triangles) {
   NoProgress progress;
   const std::vector<lod::Target> targets{{triangles, 0}};
-  return lod::simplify(full, targets, world.gutter(), progress).front();
+  return lod::simplify(full, targets, world.gutter(), 0, progress).front();
 }
 
 std::vector<std::uint32_t> copies_of_points(const lod::Level& level) {
@@ -42,8 +42,11 @@ void shake(lod::Level& level, double by, std::uint32_t seed) {
 double energy_of(lod::Draft& draft) {
   double sum = 0;
   const std::vector<mesh::Triangle>& triangles = draft.level().mesh.triangles;
-  for (std::uint32_t t = 0; t < triangles.size(); ++t)
-    sum += draft.energy(draft.witnesses_of(t), std::span(triangles).subspan(t, 1));
+  std::vector<lod::Held> held;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    draft.collect(std::array{t}, held);
+    sum += draft.energy(held, std::span(triangles).subspan(t, 1));
+  }
   return sum;
 }
 
@@ -76,7 +79,7 @@ TEST_CASE("a level that was shaken comes back to the full surface, with as many 
     shake(level, 0.07, seed);
     const double shaken = ruler.texture_deviation(level).mean;
     REQUIRE(shaken > 1.5 * before);
-    lod::refine(full, level);
+    lod::refine(full, level, NoProgress{});
     CHECK(ruler.texture_deviation(level).mean < 1.1 * before);
     CHECK(ruler.texture_deviation(level).outside == 0);
     CHECK(level.mesh.triangles.size() <= 400);
@@ -93,7 +96,7 @@ TEST_CASE("each step lowers the deviation, folds nothing and keeps the surface c
   REQUIRE(is_sound(draft, sign));
   const double shaken = energy_of(draft);
 
-  lod::relocate(draft);
+  lod::relocate(draft, NoProgress{});
   const double moved = energy_of(draft);
   CHECK(moved < 0.5 * shaken);
   CHECK(is_sound(draft, sign));
@@ -113,7 +116,7 @@ TEST_CASE("what lies on the borders of charts and materials keeps its place in t
   shake(level, 0.02, 5);
   const std::vector<texture::CutVertex> before = level.mesh.vertices;
   const std::vector<std::uint32_t> copies = copies_of_points(level);
-  lod::refine(full, level);
+  lod::refine(full, level, NoProgress{});
   std::size_t moved = 0;
   for (std::size_t v = 0; v < before.size(); ++v) {
     const texture::CutVertex& after = level.mesh.vertices[v];
@@ -130,6 +133,6 @@ TEST_CASE("the full surface itself is left alone") {
   lod::Level level = level_of(world, full, world.cut.triangles.size());
   REQUIRE(level.mesh.triangles.size() == world.cut.triangles.size());
   const std::vector<Vec3f> positions = level.positions;
-  lod::refine(full, level);
+  lod::refine(full, level, NoProgress{});
   CHECK(level.positions == positions);
 }

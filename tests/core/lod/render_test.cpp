@@ -36,7 +36,7 @@ struct Studio {
   [[nodiscard]] lod::Level level(std::uint64_t triangles) const {
     NoProgress progress;
     const std::vector<lod::Target> targets{{triangles, 0}};
-    return lod::simplify(full, targets, world.gutter(), progress).front();
+    return lod::simplify(full, targets, world.gutter(), 0, progress).front();
   }
 
   const lod_tests::World& world;

@@ -101,9 +101,9 @@ TEST_CASE("charts keep their gutters apart, use four fifths of their pages and h
       CHECK(chart.y + chart.height <= mesh.pages[0].height);
       for (std::size_t j = 0; j < i; ++j) CHECK_FALSE(overlap(chart, mesh.charts[j], 2 * mesh.gutter));
       const FlatCharts::Size& size = spheres.charts[i / 6].sizes[i % 6];
-      const double density = chart.width * chart.height / (size.width * size.height);
-      least = std::min(least, density);
-      most = std::max(most, density);
+      const double own = chart.width * chart.height / (size.width * size.height);
+      least = std::min(least, own);
+      most = std::max(most, own);
     }
     CHECK(most / least < 1.1);
   }
