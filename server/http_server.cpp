@@ -220,12 +220,20 @@ private:
         svr_sock_, socket, keep_alive_max_count_, keep_alive_timeout_sec_, read_timeout_sec_, read_timeout_usec_,
         write_timeout_sec_, write_timeout_usec_, [&](httplib::Stream& stream, bool close, bool& closed) {
           return process_request(stream, remote_address, remote_port, local_address, local_port, close, closed,
-                                 [](httplib::Request& request) { request.ranges.clear(); });
+                                 prepare);
         });
     connections_.close(current_connection);
     ::shutdown(socket, SHUT_RDWR);
     ::close(socket);
     return result;
+  }
+
+  static void prepare(httplib::Request& request) {
+    request.ranges.clear();
+    // RFC 9112, section 6.3: without a length and a transfer coding a request has no body. The library would look for
+    // that of a DELETE all the same, and take the connection's next request for it.
+    if (!request.has_header("Content-Length") && !request.has_header("Transfer-Encoding"))
+      request.body_consumed_ = true;
   }
 
   // The routes may wait; meanwhile the connection is not a slow one.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/mesh/thread_pool.h"
+#include "core/sphere/block_ordering.h"
 #include "core/sphere/global_step.h"
 
 namespace orbis::sphere {
@@ -36,7 +37,7 @@ private:
   double exact_share_;
   std::vector<double> mass_;           // by vertex: a third of the reference area of its triangles
   Eigen::SparseMatrix<double> matrix_; // lower triangle
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, BlockOrdering> solver_;
   bool analysed_ = false;
   std::vector<Tangent> gradient_, direction_;
   std::vector<Vec3d> trial_;

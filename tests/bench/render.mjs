@@ -1,8 +1,9 @@
 // Renders two models with three.js in headless Chromium, from the same views with the same light, and compares them.
 //
-//   npm install --prefix tests three@0.170.0   # once; not among the tests' packages
-//   node tests/bench/render.mjs BEFORE.glb AFTER.glb [PICTURE.png]
+//   npm install --prefix tests/web   # once
+//   node tests/bench/render.mjs [--unlit] BEFORE.glb AFTER.glb [PICTURE.png]
 //
+// --unlit: the base colour as it is, without light.
 // Prints, for three views of 1024 x 1024 pixels, the PSNR of AFTER against BEFORE (sRGB bytes) over the pixels that either
 // covers, and over those that both cover wholly: the shading alone, without the outline. PICTURE: both side by side in the
 // first view, and their difference times eight.
@@ -13,8 +14,9 @@ import {tmpdir} from 'node:os';
 import {dirname, join, normalize} from 'node:path';
 import {fileURLToPath} from 'node:url';
 
-const [before, after, picture] = process.argv.slice(2);
-const three = join(dirname(fileURLToPath(import.meta.url)), '..', 'node_modules', 'three');
+const is_unlit = process.argv[2] === '--unlit';
+const [before, after, picture] = process.argv.slice(is_unlit ? 3 : 2);
+const three = join(dirname(fileURLToPath(import.meta.url)), '..', 'web', 'node_modules', 'three');
 
 const page = `<!doctype html><script type="importmap">{"imports": {"three": "/three/build/three.module.js"}}</script>
 <script type="module">
@@ -28,6 +30,9 @@ async function load(name) {
   const gltf = await new GLTFLoader().loadAsync(name);
   gltf.scene.updateMatrixWorld(true);
   gltf.scene.traverse(o => {
+    if (o.isMesh && ${is_unlit})
+      o.material = new THREE.MeshBasicMaterial({map: o.material.map, color: o.material.color, side: o.material.side,
+                                                vertexColors: o.material.vertexColors, toneMapped: false});
     for (const m of o.isMesh ? [o.material].flat() : []) {
       for (const map of [m.map, m.normalMap, m.roughnessMap, m.emissiveMap, m.aoMap]) if (map) map.anisotropy = 8;
     }

@@ -95,6 +95,8 @@ function describe(name, result, report, invalid, seconds) {
     dirichlet: at(report, 'distortion', 'symmetric_dirichlet'),
     conformal: at(report, 'distortion', 'quasi_conformal_mean'),
     used: at(report, 'atlas', 'utilisation'),
+    // The first percentile of the texel density over the median.
+    density: at(report, 'atlas', 'density_median') ? report.atlas.density_p1 / report.atlas.density_median : undefined,
     seconds: report ? report.timing.wall_ms / 1000 : seconds,
     cpu: report ? report.timing.cpu_ms / 1000 : undefined,
     megabytes: report ? report.timing.peak_rss_bytes / 2 ** 20 : undefined,

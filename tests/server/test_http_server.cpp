@@ -173,6 +173,20 @@ TEST_CASE_FIXTURE(Site, "an upload that failed leaves nothing behind") {
   CHECK(std::filesystem::is_empty(directory.path / "jobs"));
 }
 
+TEST_CASE_FIXTURE(Site, "a connection goes on after a DELETE without a body") {
+  open();
+  const std::string job = ask("POST", "/v1/jobs", glb, "glTF....").header("Location");
+  REQUIRE_FALSE(job.empty());
+  const auto socket = connect();
+  send(socket, "DELETE " + job + " HTTP/1.1\r\nHost: test\r\n\r\n");
+  std::string text(1 << 16, '\0'); // the answer is one write
+  const auto got = ::recv(socket.get(), text.data(), text.size(), 0);
+  REQUIRE(got > 12);
+  CHECK(text.substr(9, 3) == "200");
+  send(socket, "GET " + job + " HTTP/1.1\r\nHost: test\r\nConnection: close\r\n\r\n");
+  CHECK(receive(socket).status == 200);
+}
+
 TEST_CASE_FIXTURE(Site, "clients that send nothing do not keep others out") {
   server::HttpSettings settings;
   settings.connections = 16;
