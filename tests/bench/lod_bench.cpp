@@ -1,24 +1,30 @@
 // Levels of detail alone: time, how far each level is from the full surface, and how it looks.
 //
-//   bench_lod [--levels 0.25,0.05,0.01] [--size 2048] [--meshopt] [--pictures DIR] MODEL…
+//   bench_lod [--levels 0.25,0.05,0.01] [--size 2048] [--meshopt] [--pictures DIR] [--write FULL.obj]
+//             [--beside LOW.obj,NORMALS.png]… MODEL…
 //
 // For each model and level: triangles; CPU milliseconds of the simplification of all levels; mean distance level to
 // full and full to level, Hausdorff distance, mean and largest texture deviation, all in per cent of the bounding box's
 // diagonal; part of the surface that samples outside of the charts, in per cent; PSNR of the normal-mapped render
 // against the full surface's, and of one with the level's own normals, in dB. --meshopt: the same distances for
 // meshoptimizer's simplification of the uncut mesh. --pictures: a row of pictures for each model: full, then for each
-// level with the normal map and without.
+// level with the normal map and without. --write: the full surface, for others to work on. --beside: the same measures
+// for another program's level (in the same coordinates) with its map of object-space normals, and their pictures too;
+// tests/bench/blender.py makes one.
 #include <meshoptimizer.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <fstream>
+#include <iterator>
+#include <list>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "bench/read_surface.h"
+#include "core/asset/asset.h"
 #include "core/asset/image_codec.h"
 #include "core/lod/distance.h"
 #include "core/lod/normal_map.h"
@@ -27,6 +33,7 @@
 #include "core/sphere/embedding.h"
 #include "core/sphere/snap.h"
 #include "core/texture/canvas.h"
+#include "core/texture/sampler.h"
 
 using namespace orbis;
 
@@ -36,7 +43,66 @@ struct Arguments {
   std::vector<double> ratios{0.25, 0.05, 0.01};
   std::uint32_t size = 2048;
   bool meshopt = false;
-  std::string pictures;
+  std::string pictures, written;
+  std::vector<std::string> beside; // LOW.obj,NORMALS.png
+};
+
+std::vector<std::byte> bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<char> text{std::istreambuf_iterator<char>(file), {}};
+  const auto bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
+}
+
+void write_obj(const std::string& path, const mesh::TriangleMesh& surface) {
+  std::ofstream file(path);
+  file.precision(9);
+  for (const Vec3f& p : surface.positions) file << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
+  for (const auto& [a, b, c] : surface.triangles) file << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
+}
+
+// Another program's level: its triangles, and normals from a picture.
+class Foreign {
+public:
+  explicit Foreign(const std::string& files)
+      : image_(
+            asset::decode_image(bytes_of(files.substr(files.find(',') + 1)), std::uint64_t{1} << 28U, "the normals")),
+        sampler_(image_, texture::Wrap::clamp, texture::Wrap::clamp, 1, texture::Encoding::linear) {
+    const asset::Asset asset = asset::read_asset(bytes_of(files.substr(0, files.find(','))), {}, {});
+    for (const asset::Primitive& p : asset.primitives) {
+      const auto first = static_cast<mesh::Index>(positions_.size());
+      const asset::Attribute* uv = p.find("TEXCOORD_0");
+      if (uv == nullptr) throw Error(ErrorCode::malformed, "the level has no texture coordinates", files);
+      for (const Vec3f& position : p.positions()) {
+        const auto v = static_cast<std::uint32_t>(positions_.size()) - first;
+        positions_.push_back(position);
+        uv_.push_back({uv->get(v, 0), uv->get(v, 1)});
+      }
+      for (std::size_t i = 0; i + 2 < p.indices.size(); i += 3)
+        triangles_.push_back({first + p.indices[i], first + p.indices[i + 1], first + p.indices[i + 2]});
+    }
+  }
+
+  [[nodiscard]] std::span<const Vec3f> positions() const { return positions_; }
+  [[nodiscard]] std::span<const mesh::Triangle> triangles() const { return triangles_; }
+  [[nodiscard]] lod::Sitter sitter() const {
+    return {positions_, triangles_, [this](std::uint32_t t, const std::array<double, 3>& w) {
+              double u = 0, v = 0;
+              for (std::size_t k = 0; k < 3; ++k) {
+                u += w[k] * uv_[triangles_[t][k]][0];
+                v += w[k] * uv_[triangles_[t][k]][1];
+              }
+              const texture::Light n = sampler_.sample(u * image_.width, v * image_.height, 0);
+              return Vec3d{2.0 * n[0] - 1, 2.0 * n[1] - 1, 2.0 * n[2] - 1};
+            }};
+  }
+
+private:
+  texture::Image image_;
+  texture::Sampler sampler_;
+  std::vector<Vec3f> positions_;
+  std::vector<std::array<double, 2>> uv_;
+  std::vector<mesh::Triangle> triangles_;
 };
 
 texture::CutMesh make_atlas(const mesh::TriangleMesh& surface, std::uint32_t size) {
@@ -105,13 +171,14 @@ struct Shown {
 };
 
 void write_pictures(const std::string& path, const lod::Photographer& photographer, const lod::NormalMap& map,
-                    const std::vector<lod::Level>& levels, std::size_t view) {
+                    const std::vector<lod::Level>& levels, const std::list<Foreign>& beside, std::size_t view) {
   std::vector<lod::Picture> row{photographer.of_full(view)};
   for (const lod::Level& level : levels) {
     const Shown shown(level, map);
     row.push_back(photographer.of(shown.with_map, view));
     row.push_back(photographer.of(shown.without_map, view));
   }
+  for (const Foreign& other : beside) row.push_back(photographer.of(other.sitter(), view));
   const Frame frame = frame_of(row);
   texture::Image image{frame.width() * static_cast<std::uint32_t>(row.size()), frame.height(), 3, {}};
   image.pixels.resize(std::size_t{image.width} * image.height * 3);
@@ -173,9 +240,20 @@ void measure(const std::string& path, const Arguments& arguments) {
     std::printf("%-26s %7zu %6zu %6.0f ms  %.4f %.4f %.3f  meshoptimizer\n", name.c_str(), surface.triangles.size(),
                 level.mesh.triangles.size(), time, 100 * d.to_full, 100 * d.from_full, 100 * d.hausdorff);
   }
+  std::list<Foreign> beside; // sitters refer to them
+  for (const std::string& files : arguments.beside) {
+    const Foreign& other = beside.emplace_back(files);
+    std::vector<Vec3d> scaled;
+    for (const Vec3f& p : other.positions()) scaled.push_back(full.in_scale(p));
+    const lod::Distances d = lod::distances_between(scaled, other.triangles(), positions, cut.triangles, threads);
+    std::printf("%-26s %7zu %6zu            %.4f %.4f %.3f                          %.1f  %s\n", name.c_str(),
+                surface.triangles.size(), other.triangles().size(), 100 * d.to_full, 100 * d.from_full,
+                100 * d.hausdorff, photographer.psnr(other.sitter()), files.c_str());
+  }
+  if (!arguments.written.empty()) write_obj(arguments.written, surface);
   for (std::size_t view = 0; view < lod::Photographer::views && !arguments.pictures.empty(); ++view)
     write_pictures(arguments.pictures + "/" + name + "-" + std::to_string(view) + ".jpg", photographer, map, levels,
-                   view);
+                   beside, view);
 }
 
 } // namespace
@@ -194,6 +272,10 @@ int main(int count, char** values) {
       arguments.meshopt = true;
     } else if (word == "--pictures" && i + 1 < count) {
       arguments.pictures = values[++i];
+    } else if (word == "--write" && i + 1 < count) {
+      arguments.written = values[++i];
+    } else if (word == "--beside" && i + 1 < count) {
+      arguments.beside.emplace_back(values[++i]);
     } else {
       try {
         measure(word, arguments);
