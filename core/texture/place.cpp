@@ -15,8 +15,9 @@ namespace {
 
 constexpr std::uint32_t smallest_page = 64, smallest_chart = 2;
 constexpr std::uint32_t least_gutter = 2;
-constexpr double most_for_gutters = 0.1; // of a page
+constexpr double most_for_gutters = 0.1; // of all pages
 constexpr int bisections = 12;
+constexpr std::size_t many_charts = 60; // of one page: they fill one shape as well as another
 
 std::uint32_t multiple_of_4(double texels) { return static_cast<std::uint32_t>(std::ceil(texels / 4)) * 4; }
 
@@ -40,14 +41,14 @@ public:
     return {whole(sizes_[i].width), whole(sizes_[i].height)};
   }
 
-  // The part of the page that gutters of this width take.
-  [[nodiscard]] double gutter_share(const Extent& page, double density, std::uint32_t gutter) const {
-    double texels_of_gutters = 0;
+  // The texels that gutters of this width take.
+  [[nodiscard]] double texels_of_gutters(double density, std::uint32_t gutter) const {
+    double sum = 0;
     for (std::size_t i = 0; i < charts_.size(); ++i) {
       const Extent e = texels(i, density);
-      texels_of_gutters += 2.0 * gutter * (e.width + e.height) + 4.0 * gutter * gutter;
+      sum += 2.0 * gutter * (e.width + e.height) + 4.0 * gutter * gutter;
     }
-    return texels_of_gutters / (static_cast<double>(page.width) * page.height);
+    return sum;
   }
 
   // The page needs no gutter at its own border: reads are clamped there.
@@ -77,7 +78,7 @@ public:
     double side = std::max<double>(smallest_page, density * std::sqrt(area_));
     for (;; side = std::max(side + 4, 1.02 * side)) {
       const std::uint32_t width = std::min(multiple_of_4(side), widest);
-      if (fit({width, width}, density, gutter)) return lowered({width, width}, density, gutter);
+      if (fit({width, width}, density, gutter)) return reshaped({width, width}, density, gutter, widest);
       if (width == widest) return std::nullopt;
     }
   }
@@ -87,9 +88,24 @@ private:
   std::vector<FlatCharts::Size> sizes_;
   double area_ = 0;
 
-  [[nodiscard]] Extent lowered(Extent page, double density, std::uint32_t gutter) const {
-    while (page.height > smallest_page && fit({page.width, page.height - 4}, density, gutter)) page.height -= 4;
-    return page;
+  // Other widths than a square's that fits, each as low as it gets while it takes less.
+  [[nodiscard]] Extent reshaped(const Extent& square, double density, std::uint32_t gutter,
+                                std::uint32_t widest) const {
+    Extent best = square;
+    const auto area_of = [](const Extent& e) { return std::uint64_t{e.width} * e.height; };
+    for (int percent = 80; percent <= 150; percent += charts_.size() < many_charts ? 2 : 20) {
+      const std::uint32_t width = std::min(multiple_of_4(square.width * percent / 100.0), widest);
+      const auto lower = [&](std::uint64_t area) { return static_cast<std::uint32_t>(area / width / 4 * 4); };
+      std::uint32_t high = std::min(lower(area_of(best) - 1), widest);
+      if (high < smallest_page || width < smallest_page || !fit({width, high}, density, gutter)) continue;
+      std::uint32_t low = std::max(lower(static_cast<std::uint64_t>(density * density * area_)), smallest_page);
+      while (low + 4 < high) {
+        const std::uint32_t middle = (low + high) / 8 * 4;
+        (fit({width, middle}, density, gutter) ? high : low) = middle;
+      }
+      best = {width, high};
+    }
+    return best;
   }
 };
 
@@ -199,20 +215,28 @@ private:
     return packers_[largest].fit(shape, density_, out_.mesh.gutter).has_value();
   }
 
-  [[nodiscard]] std::uint32_t gutter_for(const PagePacker& packer) const {
-    const Extent page{width_, width_};
-    const double density = 0.9 * width_ / std::sqrt(packer.area());
+  // As wide as they come while those of all pages leave enough for the charts.
+  [[nodiscard]] std::uint32_t gutter_for(const PagePacker& largest) const {
+    const double density = 0.9 * width_ / std::sqrt(largest.area());
+    const auto share = [&](std::uint32_t gutter) {
+      double gutters = 0, area = 0;
+      for (const PagePacker& packer : packers_) {
+        gutters += packer.texels_of_gutters(density, gutter);
+        area += packer.area();
+      }
+      return gutters * largest.area() / (area * width_ * width_);
+    };
     std::uint32_t gutter = std::bit_floor(std::max(width_ / 128, least_gutter));
-    while (gutter > least_gutter && packer.gutter_share(page, density, gutter) > most_for_gutters) gutter /= 2;
+    while (gutter > least_gutter && share(gutter) > most_for_gutters) gutter /= 2;
     return gutter;
   }
 
   // A few charts may fit a lower page better; many fill a square as well.
   [[nodiscard]] std::vector<Extent> shapes(std::size_t charts) const {
-    constexpr std::size_t many = 60;
+    constexpr int shapes_at_most = 64;
     std::vector<Extent> out{{width_, width_ / 4 * 4}};
-    for (int sixteenths = 15; charts < many && sixteenths >= 8; --sixteenths)
-      out.push_back({width_, multiple_of_4(width_ * sixteenths / 16.0)});
+    for (int part = shapes_at_most - 1; charts < many_charts && 2 * part >= shapes_at_most; --part)
+      out.push_back({width_, multiple_of_4(width_ * part / double{shapes_at_most})});
     return out;
   }
 

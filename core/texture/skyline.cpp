@@ -1,13 +1,18 @@
 #include "core/texture/skyline.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <numeric>
+#include <random>
 #include <set>
 #include <tuple>
 
 namespace orbis::texture {
 namespace {
+
+// Of orders that are tried for few rectangles; each takes about the square of their number of steps.
+constexpr std::size_t tries_at_most = 48, work = 6000;
 
 // The upper outline of what has been placed: steps from left to right that fill the page's width.
 class Skyline {
@@ -164,28 +169,41 @@ Placements pack_by_steps(std::span<const Extent> rectangles, const Extent& page)
   return placements;
 }
 
-template <class Larger> std::vector<std::uint32_t> ordered(std::size_t count, Larger larger) {
-  std::vector<std::uint32_t> order(count);
+// The numbers of the rectangles, those with the largest `size` first.
+template <class Size> std::vector<std::uint32_t> ordered(std::span<const Extent> rectangles, Size size) {
+  std::vector<std::uint32_t> order(rectangles.size());
   std::iota(order.begin(), order.end(), 0U);
-  std::stable_sort(order.begin(), order.end(), larger);
+  std::ranges::stable_sort(order, std::greater<>(), [&](std::uint32_t i) { return size(rectangles[i]); });
   return order;
+}
+
+// Few rectangles in other orders, near a good one; the same ones every time.
+Placements pack_in_some_order(std::span<const Extent> rectangles, std::vector<std::uint32_t> order,
+                              const Extent& page) {
+  const std::size_t count = order.size(), tries = std::min<std::size_t>(tries_at_most, work / (count * count));
+  std::mt19937 random(1);
+  for (std::size_t i = 0; i < tries; ++i) {
+    std::swap(order[random() % count], order[random() % count]);
+    if (auto placements = pack_in_order(rectangles, order, page)) return placements;
+  }
+  return std::nullopt;
 }
 
 } // namespace
 
 Placements pack(std::span<const Extent> rectangles, const Extent& page) {
+  if (rectangles.empty()) return std::vector<Placement>{};
   std::uint64_t area = 0;
   for (const Extent& r : rectangles) area += std::uint64_t{r.width} * r.height;
   if (area > std::uint64_t{page.width} * page.height) return std::nullopt;
   if (auto placements = pack_by_steps(rectangles, page)) return placements;
-  const auto long_side = [&](std::uint32_t i) { return std::max(rectangles[i].width, rectangles[i].height); };
-  const auto by_long_side =
-      ordered(rectangles.size(), [&](std::uint32_t a, std::uint32_t b) { return long_side(a) > long_side(b); });
-  if (auto placements = pack_in_order(rectangles, by_long_side, page)) return placements;
-  const auto area_of = [&](std::uint32_t i) { return std::uint64_t{rectangles[i].width} * rectangles[i].height; };
-  const auto by_area =
-      ordered(rectangles.size(), [&](std::uint32_t a, std::uint32_t b) { return area_of(a) > area_of(b); });
-  return pack_in_order(rectangles, by_area, page);
+  const auto by_long_side = ordered(rectangles, [](const Extent& r) { return std::max(r.width, r.height); });
+  const auto by_area = ordered(rectangles, [](const Extent& r) { return std::uint64_t{r.width} * r.height; });
+  const auto by_perimeter = ordered(rectangles, [](const Extent& r) { return r.width + r.height; });
+  const auto by_short_side = ordered(rectangles, [](const Extent& r) { return std::min(r.width, r.height); });
+  for (const auto* order : {&by_long_side, &by_area, &by_perimeter, &by_short_side})
+    if (auto placements = pack_in_order(rectangles, *order, page)) return placements;
+  return pack_in_some_order(rectangles, by_long_side, page);
 }
 
 } // namespace orbis::texture
