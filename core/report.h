@@ -77,7 +77,7 @@ struct Report {
     std::vector<Page> pages;
     std::uint32_t gutter = 0;
     std::uint64_t charts = 0, cut_triangles = 0, added_vertices = 0;
-    double utilisation = 0; // texels covered by charts / all texels
+    double utilisation = 0; // texels covered by triangles / all texels
     texture::AtlasQuality quality;
     std::string source; // "pattern", "cubemap", "base_color"
   } atlas;

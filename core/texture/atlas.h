@@ -70,7 +70,7 @@ struct CutMesh {
   [[nodiscard]] std::uint32_t page_of(std::size_t triangle) const { return charts[chart[triangle]].page; }
 };
 
-// Texels covered by charts / all texels, over all pages.
+// Texels covered by triangles / all texels, over all pages.
 [[nodiscard]] double utilisation(const CutMesh& mesh);
 
 // What an atlas is made for: one component of a surface, mapped to a sphere of its own.

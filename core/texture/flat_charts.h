@@ -22,8 +22,8 @@ struct FlatPlace {
 };
 
 struct FlatCharts {
-  // Charts without a rectangle, vertices without uv; numbered within the component; with the triangles that only close
-  // holes.
+  // Charts without a rectangle, vertices without uv; numbered within the component. Until lay_flat() is done there are
+  // the triangles that only close holes, too.
   CutMesh mesh;
   std::vector<FlatPlace> places;
   std::vector<std::uint32_t> place_of;   // vertex -> place
@@ -35,7 +35,8 @@ struct FlatCharts {
   std::vector<bool> is_shown; // by chart: whether any of its triangles is delivered; others get no texels
 };
 
-// Cuts a component into charts and lays them flat, these on the pool's threads. Throws as cut() and flatten() do.
+// Cuts a component into charts and lays them flat, these on the pool's threads; what only closes holes is gone then,
+// and charts are the rectangles around what is left. Throws as cut() and flatten() do.
 [[nodiscard]] FlatCharts lay_flat(const AtlasComponent& component, Progress& progress, mesh::ThreadPool& pool);
 
 } // namespace orbis::texture

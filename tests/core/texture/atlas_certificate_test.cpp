@@ -127,6 +127,28 @@ TEST_CASE("what closes a hole takes no texels from the surface around it") {
   const AtlasQuality quality = measure_atlas(mesh, shell);
   CHECK(quality.density_p1 > 0.75 * quality.density_median);
   CHECK(quality.l2_stretch < 1.1);
+
+  // Charts are the rectangles around what is delivered, but for room to move by some units of the grid.
+  std::vector<double> left(mesh.charts.size(), 1e9), right(left.size()), top(left), bottom(left.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Page& page = mesh.pages[mesh.page_of(t)];
+    for (const mesh::Index v : mesh.triangles[t]) {
+      const double x = double{mesh.vertices[v].uv.x} * page.width, y = double{mesh.vertices[v].uv.y} * page.height;
+      const std::uint32_t c = mesh.chart[t];
+      left[c] = std::min(left[c], x);
+      right[c] = std::max(right[c], x);
+      top[c] = std::min(top[c], y);
+      bottom[c] = std::max(bottom[c], y);
+    }
+  }
+  double texels = 0;
+  for (std::size_t c = 0; c < mesh.charts.size(); ++c) {
+    CHECK(right[c] - left[c] >= 0.96 * mesh.charts[c].width);
+    CHECK(bottom[c] - top[c] >= 0.96 * mesh.charts[c].height);
+    texels += static_cast<double>(mesh.charts[c].width) * mesh.charts[c].height;
+  }
+  // What is used is what triangles cover, not their charts.
+  CHECK(utilisation(mesh) * mesh.pages[0].width * mesh.pages[0].height < texels);
 }
 
 TEST_CASE("the sphere itself has the cube's seams, an even density and hardly any stretch") {
