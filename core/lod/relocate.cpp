@@ -53,9 +53,12 @@ private:
 
   // r = sum_k w_k p_k - P at a witness. To move v in the atlas by d slides the level's map under the witness:
   // with the Jacobian J of the triangle's map, dr = w_v (dp - J d).
-  // `energy` becomes the sum of the deviations as they are.
-  [[nodiscard]] std::optional<Vector5> newton_step(mesh::Index v, double& energy) {
-    energy = 0;
+  struct NewtonStep {
+    Vector5 step;
+    double energy; // the sum of the deviations before it
+  };
+  [[nodiscard]] std::optional<NewtonStep> newton_step(mesh::Index v) {
+    double energy = 0;
     Matrix5 h = Matrix5::Zero();
     Vector5 g = Vector5::Zero();
     const double scale = draft_.full().uv_scale();
@@ -72,10 +75,9 @@ private:
       for (const std::uint32_t i : draft_.witnesses_of(number)) {
         const Witness& witness = draft_.witness(i);
         const std::array<double, 3> w = in_atlas.weights(witness.uv);
-        const Vec3d r = draft_.positions[t[0]] * w[0] + draft_.positions[t[1]] * w[1] + draft_.positions[t[2]] * w[2] -
-                        witness.position;
-        energy += witness.deviation(r + witness.position);
-        add(witness, r, w[0], {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}, -j0, -j1}, h, g);
+        const Vec3d p = draft_.positions[t[0]] * w[0] + draft_.positions[t[1]] * w[1] + draft_.positions[t[2]] * w[2];
+        energy += witness.deviation(p);
+        add(witness, p - witness.position, w[0], {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}, -j0, -j1}, h, g);
       }
     }
     const double held = damping * h.trace() / 5;
@@ -83,7 +85,7 @@ private:
     h.diagonal().array() += held;
     const Vector5 step = h.ldlt().solve(-g);
     if (!step.allFinite()) return std::nullopt;
-    return step;
+    return NewtonStep{step, energy};
   }
 
   static void add(const Witness& witness, const Vec3d& r, double w, const std::array<Vec3d, 5>& derivatives, Matrix5& h,
@@ -108,9 +110,8 @@ private:
   void move(mesh::Index v) {
     draft_.collect(stars_[v], held_);
     if (held_.size() < least_data) return;
-    double energy = 0;
-    const std::optional<Vector5> step = newton_step(v, energy);
-    if (!step) return;
+    const std::optional<NewtonStep> newton = newton_step(v);
+    if (!newton) return;
     triangles_.clear();
     normals_.clear();
     for (const std::uint32_t t : stars_[v]) {
@@ -119,11 +120,12 @@ private:
     }
     const texture::CutVertex before = mesh_.vertices[v];
     const Vec3d position = draft_.positions[v];
-    const double most = (1 - least_gain) * energy;
+    const double most = (1 - least_gain) * newton->energy;
     const int sign = draft_.atlas_orientation(triangles_[0]);
     for (int halvings = 0; halvings <= most_halvings; ++halvings) {
       const double length = std::ldexp(1, -halvings);
-      if (put(v, before, position, *step * length) && is_sound(sign) && draft_.energy(held_, triangles_) < most) {
+      if (put(v, before, position, newton->step * length) && is_sound(sign) &&
+          draft_.energy(held_, triangles_) < most) {
         draft_.level().near[v] = near_;
         draft_.hand_over(held_, stars_[v]);
         return;

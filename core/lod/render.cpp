@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "core/lod/chart_map.h"
 #include "core/texture/bands.h"
@@ -46,17 +45,16 @@ public:
   Viewfinder(std::span<const Vec3d> positions, std::span<const mesh::Triangle> triangles, const View& view,
              std::uint32_t size)
       : triangles_(triangles), size_(size), seen_(seen_from(positions, view, size)),
-        bands_(all(triangles.size()), size, rows, [&](std::uint32_t t) { return corners(t); }) {}
+        bands_(texture::all_triangles(triangles.size()), size, rows, [this](std::uint32_t t) { return corners(t); }) {}
 
   [[nodiscard]] std::size_t bands() const { return bands_.count(); }
 
   // The fragments of a band's rows, one after the other.
   [[nodiscard]] const std::vector<Fragment>& band(std::size_t number) {
-    const std::uint32_t top = static_cast<std::uint32_t>(number) * rows, height = std::min(rows, size_ - top);
+    const std::uint32_t height = bands_.rows(number);
     fragments_.assign(std::size_t{height} * size_, {});
-    for (const std::uint32_t t : bands_[number]) {
-      std::array<texture::RasterPoint, 3> p = corners(t);
-      for (texture::RasterPoint& corner : p) corner.y -= top;
+    const auto corners_of = [this](std::uint32_t t) { return corners(t); };
+    bands_.for_each(number, corners_of, [&](std::uint32_t t, const std::array<texture::RasterPoint, 3>& p) {
       const auto& [a, b, c] = triangles_[t];
       const double za = seen_[a].z, zb = seen_[b].z, zc = seen_[c].z;
       texture::rasterize(p, size_, height, [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>& w) {
@@ -64,7 +62,7 @@ public:
         const auto depth = static_cast<float>(w[0] * za + w[1] * zb + w[2] * zc);
         if (depth > f.depth) f = {t, depth, static_cast<float>(w[1]), static_cast<float>(w[2])};
       });
-    }
+    });
     return fragments_;
   }
 
@@ -75,11 +73,6 @@ private:
     for (const Vec3d& p : positions)
       seen.emplace_back(size * (0.5 + dot(p, view.right)), size * (0.5 - dot(p, view.up)), dot(p, view.towards));
     return seen;
-  }
-  static std::vector<std::uint32_t> all(std::size_t count) {
-    std::vector<std::uint32_t> numbers(count);
-    std::iota(numbers.begin(), numbers.end(), 0U);
-    return numbers;
   }
   [[nodiscard]] std::array<texture::RasterPoint, 3> corners(std::uint32_t t) const {
     std::array<texture::RasterPoint, 3> out;

@@ -12,7 +12,6 @@
 #include "core/lod/drop_components.h"
 #include "core/lod/extract.h"
 #include "core/lod/refine.h"
-#include "core/mesh/thread_pool.h"
 
 namespace orbis::lod {
 namespace {
@@ -32,8 +31,8 @@ struct Candidate {
 
 class Simplifier {
 public:
-  Simplifier(const FullSurface& full, double gutter, std::uint32_t threads, Progress& progress)
-      : full_(full), gutter_(gutter), progress_(progress), threads_(threads), mesh_(full, threads_),
+  Simplifier(const FullSurface& full, double gutter, mesh::ThreadPool& threads, Progress& progress)
+      : full_(full), gutter_(gutter), progress_(progress), threads_(threads), mesh_(full, threads),
         collapser_(full, mesh_) {
     first_count_ = mesh_.triangle_count;
     fill_queue();
@@ -173,7 +172,7 @@ private:
   const FullSurface& full_;
   double gutter_;
   Progress& progress_;
-  mesh::ThreadPool threads_;
+  mesh::ThreadPool& threads_;
   WedgeMesh mesh_;
   Collapser collapser_;
   Concessions concessions_;
@@ -187,14 +186,14 @@ private:
 } // namespace
 
 std::vector<Level> simplify(const FullSurface& full, std::span<const Target> targets, double gutter,
-                            std::uint32_t threads, Progress& progress) {
+                            mesh::ThreadPool& threads, Progress& progress) {
   Simplifier simplifier(full, gutter, threads, progress);
   std::vector<Level> levels(targets.size());
-  const auto when = threads == 1 ? std::launch::deferred : std::launch::async;
   std::vector<std::future<void>> touches; // after the levels: they end before those do
   for (std::size_t i = 0; i < targets.size(); ++i) {
     levels[i] = simplifier.next(targets[i]);
-    touches.push_back(std::async(when, [&full, &progress, &level = levels[i]] { refine(full, level, progress); }));
+    touches.push_back(
+        std::async(threads.beside(), [&full, &progress, &level = levels[i]] { refine(full, level, progress); }));
   }
   for (std::future<void>& touch : touches) touch.get();
   return levels;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/lod/full_surface.h"
+#include "core/mesh/thread_pool.h"
 #include "core/progress.h"
 #include "core/texture/atlas.h"
 #include "core/vec3.h"
@@ -53,9 +54,9 @@ struct Level {
 // says what gives way. No level is empty.
 //
 // O(n log n). The collapses take one thread; the last touch of a level (refine.h) runs beside those for the next one if
-// `threads` (0: as many as the machine has) allows it. The same bits with any number. Reports Stage::levels; throws
+// there is a thread for it. The same bits with any number. Reports Stage::levels; throws
 // Error{canceled}.
 [[nodiscard]] std::vector<Level> simplify(const FullSurface& full, std::span<const Target> targets, double gutter,
-                                          std::uint32_t threads, Progress& progress);
+                                          mesh::ThreadPool& threads, Progress& progress);
 
 } // namespace orbis::lod

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -23,6 +24,10 @@ public:
   ThreadPool& operator=(const ThreadPool&) = delete;
 
   [[nodiscard]] std::size_t size() const { return workers_.size() + 1; }
+
+  // How std::async runs work beside the caller's: on a thread of its own, or with one thread when its result is asked
+  // for.
+  [[nodiscard]] std::launch beside() const { return workers_.empty() ? std::launch::deferred : std::launch::async; }
 
   // Calls body(begin, end) for blocks that cover [0, count); blocks are `grain` elements, the last may be shorter.
   // Small loops run in the caller. body must not throw and not touch what another block writes.

@@ -131,10 +131,9 @@ std::vector<DetailLevel> make_levels(const asset::Asset& asset, const Surface& s
   const lod::FullSurface full(surface.mesh, surface.primitive_of, cut);
   mesh::ThreadPool threads(report.options.threads);
   // The ruler has its tree by the time when there is something to measure.
-  std::future<lod::Ruler> made = std::async(threads.size() == 1 ? std::launch::deferred : std::launch::async,
-                                            [&full, &threads] { return lod::Ruler(full, threads); });
+  std::future<lod::Ruler> made = std::async(threads.beside(), [&full, &threads] { return lod::Ruler(full, threads); });
   std::vector<lod::Level> levels =
-      lod::simplify(full, targets_of(report.options, surface), gutter_in_uv(cut), report.options.threads, progress);
+      lod::simplify(full, targets_of(report.options, surface), gutter_in_uv(cut), threads, progress);
   const lod::Ruler ruler = made.get();
   double coverage = 1;
   for (std::size_t i = 0; i < levels.size(); ++i) {

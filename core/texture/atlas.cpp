@@ -24,10 +24,9 @@ std::array<double, 3> weights_on(std::uint32_t triangle, std::span<const mesh::T
 
 namespace {
 
-std::vector<bool> shown_charts(const FlatCharts& charts, std::size_t delivered) {
-  std::vector<bool> out(charts.mesh.charts.size(), false);
-  for (std::size_t t = 0; t < charts.mesh.triangles.size(); ++t)
-    if (charts.mesh.parent[t] < delivered) out[charts.mesh.chart[t]] = true;
+std::vector<bool> shown_charts(const CutMesh& mesh) {
+  std::vector<bool> out(mesh.charts.size(), false);
+  for (const std::uint32_t chart : mesh.chart) out[chart] = true;
   return out;
 }
 
@@ -106,12 +105,12 @@ void crop(FlatCharts& charts, std::size_t delivered) {
 
 FlatCharts lay_flat(const AtlasComponent& component, Progress& progress, mesh::ThreadPool& pool) {
   FlatCharts charts = cut(component, progress);
-  charts.is_shown = shown_charts(charts, component.delivered);
   std::vector<Vec3d> positions(charts.places.size());
   for (std::size_t v = 0; v < charts.mesh.vertices.size(); ++v)
     positions[charts.place_of[v]] = interpolated(component.positions, component.triangles, charts.mesh.vertices[v]);
   flatten(charts, positions, component.delivered, pool);
   crop(charts, component.delivered);
+  charts.is_shown = shown_charts(charts.mesh);
   return charts;
 }
 

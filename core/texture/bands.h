@@ -1,9 +1,11 @@
-// Triangles by the bands of rows that they reach into, so that threads can rasterise band by band.
+// Triangles by the bands of rows that they reach into, so that threads can rasterise band by band, each in its cache.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -11,13 +13,20 @@
 
 namespace orbis::texture {
 
+// The numbers of `count` triangles, for bands of all of them.
+inline std::vector<std::uint32_t> all_triangles(std::size_t count) {
+  std::vector<std::uint32_t> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), 0U);
+  return numbers;
+}
+
 // The triangles of each band, in the order in which they were given.
 class Bands {
 public:
   // triangles: numbers; corners(t): the three corners of one of them, in texels. Bands are `rows` rows of `height`.
   template <class Corners>
   Bands(std::span<const std::uint32_t> triangles, std::uint32_t height, std::uint32_t rows, Corners corners)
-      : first_((height + rows - 1) / rows + 1, 0) {
+      : height_(height), rows_(rows), first_((height + rows - 1) / rows + 1, 0) {
     const auto for_bands = [&](std::uint32_t t, auto visit) {
       const std::array<RasterPoint, 3> p = corners(t);
       const auto [low, high] = std::minmax({p[0].y, p[1].y, p[2].y});
@@ -34,11 +43,21 @@ public:
   }
 
   [[nodiscard]] std::size_t count() const { return first_.size() - 1; }
-  [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t band) const {
-    return std::span(triangles_).subspan(first_[band], first_[band + 1] - first_[band]);
+  // Its first row, and how many it has.
+  [[nodiscard]] std::uint32_t top(std::size_t band) const { return static_cast<std::uint32_t>(band) * rows_; }
+  [[nodiscard]] std::uint32_t rows(std::size_t band) const { return std::min(rows_, height_ - top(band)); }
+
+  // Calls visit(t, corners) for the triangles of a band, with the corners counted from the band's first row.
+  template <class Corners, class Visit> void for_each(std::size_t band, Corners corners, Visit visit) const {
+    for (std::uint32_t i = first_[band]; i < first_[band + 1]; ++i) {
+      std::array<RasterPoint, 3> p = corners(triangles_[i]);
+      for (RasterPoint& corner : p) corner.y -= top(band); // exact: both are multiples of the smaller one's last place
+      visit(triangles_[i], p);
+    }
   }
 
 private:
+  std::uint32_t height_, rows_;
   std::vector<std::uint32_t> first_; // band -> its first entry; one past the end
   std::vector<std::uint32_t> triangles_;
 };

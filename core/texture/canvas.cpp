@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "core/texture/bands.h"
@@ -93,16 +92,15 @@ std::array<RasterPoint, 3> corners_of(const mesh::Triangle& triangle, std::span<
   return corners;
 }
 
-// What is seen at the sub-pixels of a band of rows: `rows` from `top` on.
-void find_visible(std::span<const mesh::Triangle> triangles, std::span<const std::uint32_t> in_band,
-                  std::span<const Projected> points, std::uint32_t top, std::uint32_t width, std::uint32_t rows,
-                  std::vector<Fragment>& fragments) {
-  fragments.assign(std::size_t{width} * rows, {});
-  for (const std::uint32_t t : in_band) {
+// What is seen at the sub-pixels of a band of rows.
+std::vector<Fragment> find_visible(std::span<const mesh::Triangle> triangles, const Bands& bands, std::size_t band,
+                                   std::span<const Projected> points, std::uint32_t width) {
+  const std::uint32_t rows = bands.rows(band);
+  std::vector<Fragment> fragments(std::size_t{width} * rows);
+  const auto corners_in_band = [&](std::uint32_t t) { return corners_of(triangles[t], points); };
+  bands.for_each(band, corners_in_band, [&](std::uint32_t t, const std::array<RasterPoint, 3>& corners) {
     std::array<double, 3> inverse{};
     for (std::size_t k = 0; k < 3; ++k) inverse[k] = points[triangles[t][k]].inverse_depth;
-    std::array<RasterPoint, 3> corners = corners_of(triangles[t], points);
-    for (RasterPoint& corner : corners) corner.y -= top;
     rasterize(corners, width, rows, [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>& weights) {
       const double depth = weights[0] * inverse[0] + weights[1] * inverse[1] + weights[2] * inverse[2];
       Fragment& fragment = fragments[std::size_t{y} * width + x];
@@ -111,7 +109,8 @@ void find_visible(std::span<const mesh::Triangle> triangles, std::span<const std
       fragment = {t, static_cast<float>(depth), static_cast<float>(weights[1] * inverse[1] / depth),
                   static_cast<float>(weights[2] * inverse[2] / depth)};
     });
-  }
+  });
+  return fragments;
 }
 
 // A warm key light from the upper left, a cool fill light from the right, and sky above ground.
@@ -241,16 +240,13 @@ void Canvas::paint_background() {
 void Canvas::draw(const Shape& shape, const Viewport& view) {
   const std::vector<Projected> points = fitted(project_all(shape.positions), view);
   const auto& triangles = shape.mesh.triangles;
-  std::vector<std::uint32_t> all(triangles.size());
-  std::iota(all.begin(), all.end(), 0U);
-  const Bands bands(all, subpixels * view.height, subpixels * band_rows,
+  const Bands bands(all_triangles(triangles.size()), subpixels * view.height, subpixels * band_rows,
                     [&](std::uint32_t t) { return corners_of(triangles[t], points); });
   const Shading shading(shape, points, samplers_);
   pool_.for_blocks(bands.count(), 1, [&](std::size_t band, std::size_t) {
-    const auto top = static_cast<std::uint32_t>(band) * band_rows;
-    const std::uint32_t rows = std::min(band_rows, view.height - top), width = subpixels * view.width;
-    std::vector<Fragment> fragments;
-    find_visible(triangles, bands[band], points, subpixels * top, width, subpixels * rows, fragments);
+    const std::uint32_t width = subpixels * view.width;
+    const std::uint32_t top = bands.top(band) / subpixels, rows = bands.rows(band) / subpixels; // pixels
+    const std::vector<Fragment> fragments = find_visible(triangles, bands, band, points, width);
     for (std::uint32_t y = 0; y < rows; ++y)
       for (std::uint32_t x = 0; x < view.width; ++x) {
         std::array<Fragment, subpixels * subpixels> here;

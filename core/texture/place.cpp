@@ -286,7 +286,6 @@ private:
       return number[v];
     };
     for (std::size_t t = 0; t < part.triangles.size(); ++t) {
-      if (part.parent[t] >= component.delivered) continue;
       const auto& [a, b, c] = part.triangles[t];
       const mesh::Index p = vertex(a), q = vertex(b), r = vertex(c);
       out_.mesh.triangles.push_back({p, q, r});

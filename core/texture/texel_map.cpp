@@ -70,19 +70,17 @@ TriangleInPage TexelMap::place(std::uint32_t triangle) const {
 }
 
 void TexelMap::cover(mesh::ThreadPool& pool) {
-  const Bands bands(mesh_.shown, height_, band_rows, [&](std::uint32_t t) { return corners(t); });
+  const auto corners_of = [this](std::uint32_t t) { return corners(t); };
+  const Bands bands(mesh_.shown, height_, band_rows, corners_of);
   pool.for_blocks(bands.count(), 1, [&](std::size_t band, std::size_t) {
-    const auto top = static_cast<std::uint32_t>(band) * band_rows;
-    const std::uint32_t rows = std::min(band_rows, height_ - top);
-    for (const std::uint32_t t : bands[band]) {
-      std::array<RasterPoint, 3> p = corners(t);
-      for (RasterPoint& corner : p) corner.y -= top; // exact: both are multiples of the smaller one's last place
+    const std::uint32_t top = bands.top(band), rows = bands.rows(band);
+    bands.for_each(band, corners_of, [&](std::uint32_t t, const std::array<RasterPoint, 3>& p) {
       rasterize(p, width_, rows, [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>&) {
         const std::size_t texel = std::size_t{top + y} * width_ + x;
         triangle_[texel] = t;
         covered_[texel] = 1;
       });
-    }
+    });
   });
 }
 

@@ -8,11 +8,10 @@
 // area.
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <vector>
 
+#include "bench/read_surface.h"
 #include "core/asset/asset.h"
 #include "core/asset/image_codec.h"
 #include "core/lod/samples.h"
@@ -23,13 +22,6 @@ using namespace orbis;
 namespace {
 
 constexpr std::size_t sample_count = 1'000'000;
-
-asset::Asset read(const std::vector<char>& bytes) { return asset::read_asset(std::as_bytes(std::span(bytes)), {}, {}); }
-
-std::vector<char> bytes_of(const char* path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 texture::Wrap wrap_of(int code) {
   return code == 33071 ? texture::Wrap::clamp : code == 33648 ? texture::Wrap::mirror : texture::Wrap::repeat;
@@ -80,7 +72,7 @@ std::size_t compare(const asset::Asset& input, const asset::Asset& result, std::
     const mesh::Triangle& corners = triangles[s.triangle];
     const texture::Light a = old_colors.at(corners, s.weights), b = new_colors.at(corners, s.weights);
     for (std::size_t c = 0; c < 3; ++c) {
-      const double d = double{1} * texture::to_srgb(a[c]) - texture::to_srgb(b[c]);
+      const int d = texture::to_srgb(a[c]) - texture::to_srgb(b[c]);
       squares += d * d;
     }
   }
@@ -94,8 +86,8 @@ int main(int count, char** arguments) {
     std::fprintf(stderr, "bench_color INPUT.glb RESULT.glb\n");
     return 2;
   }
-  const std::vector<char> before = bytes_of(arguments[1]), after = bytes_of(arguments[2]);
-  const asset::Asset input = read(before), result = read(after);
+  const asset::Asset input = asset::read_asset(bench::bytes_of(arguments[1]), {}, {});
+  const asset::Asset result = asset::read_asset(bench::bytes_of(arguments[2]), {}, {});
   double squares = 0;
   std::size_t numbers = 0;
   for (std::size_t p = 0; p < input.primitives.size(); ++p) numbers += compare(input, result, p, squares);

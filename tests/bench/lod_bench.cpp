@@ -17,7 +17,6 @@
 #include <cstdio>
 #include <ctime>
 #include <fstream>
-#include <iterator>
 #include <list>
 #include <sstream>
 #include <string>
@@ -47,13 +46,6 @@ struct Arguments {
   std::vector<std::string> beside; // LOW.obj,NORMALS.png
 };
 
-std::vector<std::byte> bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::vector<char> text{std::istreambuf_iterator<char>(file), {}};
-  const auto bytes = std::as_bytes(std::span(text));
-  return {bytes.begin(), bytes.end()};
-}
-
 void write_obj(const std::string& path, const mesh::TriangleMesh& surface) {
   std::ofstream file(path);
   file.precision(9);
@@ -65,10 +57,10 @@ void write_obj(const std::string& path, const mesh::TriangleMesh& surface) {
 class Foreign {
 public:
   explicit Foreign(const std::string& files)
-      : image_(
-            asset::decode_image(bytes_of(files.substr(files.find(',') + 1)), std::uint64_t{1} << 28U, "the normals")),
+      : image_(asset::decode_image(bench::bytes_of(files.substr(files.find(',') + 1)), std::uint64_t{1} << 28U,
+                                   "the normals")),
         sampler_(image_, texture::Wrap::clamp, texture::Wrap::clamp, 1, texture::Encoding::linear) {
-    const asset::Asset asset = asset::read_asset(bytes_of(files.substr(0, files.find(','))), {}, {});
+    const asset::Asset asset = asset::read_asset(bench::bytes_of(files.substr(0, files.find(','))), {}, {});
     for (const asset::Primitive& p : asset.primitives) {
       const auto first = static_cast<mesh::Index>(positions_.size());
       const asset::Attribute* uv = p.find("TEXCOORD_0");
@@ -206,13 +198,13 @@ void measure(const std::string& path, const Arguments& arguments) {
     targets.push_back({static_cast<std::uint64_t>(r * static_cast<double>(surface.triangles.size())), 0});
 
   NoProgress progress;
+  mesh::ThreadPool threads(0);
   std::clock_t start = std::clock();
   const lod::FullSurface full(surface, primitive_of, cut);
   const double gutter = static_cast<double>(cut.gutter) / cut.pages[0].width;
-  const std::vector<lod::Level> levels = lod::simplify(full, targets, gutter, 0, progress);
+  const std::vector<lod::Level> levels = lod::simplify(full, targets, gutter, threads, progress);
   const double simplification = milliseconds_since(start);
 
-  mesh::ThreadPool threads(0);
   start = std::clock();
   const lod::Ruler ruler(full, threads);
   const std::vector<Vec3d> positions(full.positions().begin(), full.positions().end());

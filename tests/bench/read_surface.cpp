@@ -10,10 +10,15 @@
 
 namespace orbis::bench {
 
-mesh::TriangleMesh read_surface(const std::string& path) {
+std::vector<std::byte> bytes_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
-  const asset::Asset asset = asset::read_asset(std::as_bytes(std::span(bytes)), {}, {});
+  const std::vector<char> text{std::istreambuf_iterator<char>(file), {}};
+  const auto bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
+}
+
+mesh::TriangleMesh read_surface(const std::string& path) {
+  const asset::Asset asset = asset::read_asset(bytes_of(path), {}, {});
   std::vector<Vec3f> positions;
   std::vector<mesh::Triangle> triangles;
   for (const asset::Primitive& p : asset.primitives) {

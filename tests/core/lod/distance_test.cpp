@@ -33,8 +33,9 @@ double sampled_distance(const Vec3d& p, const std::array<Vec3d, 3>& t) {
 
 lod::Level whole(const lod_tests::World& world) {
   NoProgress progress;
+  mesh::ThreadPool pool(0);
   const std::vector<lod::Target> all{{world.cut.triangles.size(), 0}};
-  return lod::simplify(world.full(), all, 0, 0, progress).front();
+  return lod::simplify(world.full(), all, 0, pool, progress).front();
 }
 
 } // namespace
@@ -114,8 +115,8 @@ TEST_CASE("fitted positions are closer to the full surface than those that were 
   const lod::FullSurface full = world.full();
   NoProgress progress;
   const std::vector<lod::Target> targets{{400, 0}};
-  lod::Level level = lod::simplify(full, targets, 0, 0, progress).front();
   mesh::ThreadPool threads(1);
+  lod::Level level = lod::simplify(full, targets, 0, threads, progress).front();
   const lod::Ruler ruler(full, threads);
   const double before = ruler.texture_deviation(level).mean;
   std::mt19937 random(9);

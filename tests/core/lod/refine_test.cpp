@@ -19,7 +19,8 @@ namespace {
 lod::Level level_of(const World& world, const lod::FullSurface& full, std::uint64_t triangles) {
   NoProgress progress;
   const std::vector<lod::Target> targets{{triangles, 0}};
-  return lod::simplify(full, targets, world.gutter(), 0, progress).front();
+  mesh::ThreadPool pool(0);
+  return lod::simplify(full, targets, world.gutter(), pool, progress).front();
 }
 
 std::vector<std::uint32_t> copies_of_points(const lod::Level& level) {

@@ -35,8 +35,9 @@ struct Studio {
   }
   [[nodiscard]] lod::Level level(std::uint64_t triangles) const {
     NoProgress progress;
+    mesh::ThreadPool pool(0);
     const std::vector<lod::Target> targets{{triangles, 0}};
-    return lod::simplify(full, targets, world.gutter(), 0, progress).front();
+    return lod::simplify(full, targets, world.gutter(), pool, progress).front();
   }
 
   const lod_tests::World& world;

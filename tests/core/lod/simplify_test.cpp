@@ -22,7 +22,8 @@ namespace {
 
 std::vector<lod::Level> levels_of(const World& world, std::vector<lod::Target> targets) {
   NoProgress progress;
-  return lod::simplify(world.full(), targets, world.gutter(), 0, progress);
+  mesh::ThreadPool pool(0);
+  return lod::simplify(world.full(), targets, world.gutter(), pool, progress);
 }
 
 std::vector<lod::Target> counts(std::initializer_list<std::uint64_t> triangles) {
@@ -226,5 +227,6 @@ TEST_CASE("a cancelled job stops") {
   } progress;
   const World world = bumpy_world(5, 1);
   const std::vector<lod::Target> targets = counts({100});
-  CHECK_THROWS_AS(static_cast<void>(lod::simplify(world.full(), targets, world.gutter(), 0, progress)), Error);
+  mesh::ThreadPool pool(0);
+  CHECK_THROWS_AS(static_cast<void>(lod::simplify(world.full(), targets, world.gutter(), pool, progress)), Error);
 }
