@@ -118,7 +118,9 @@ private:
       throw Error(ErrorCode::not_certified,
                   std::to_string(snapped.folded) + " triangles are too small for the numbers of the result");
     sphere_ = std::move(snapped.points);
-    charts_ = texture::lay_flat(atlas_component(), progress, pool);
+    // What did not do at first may be the chart without a cut, which no turn changes.
+    const auto kinds = turns_ == 0 ? texture::ChartKinds::all : texture::ChartKinds::faces;
+    charts_ = texture::lay_flat(atlas_component(), kinds, progress, pool);
   }
 };
 

@@ -35,8 +35,14 @@ struct FlatCharts {
   std::vector<bool> is_shown; // by chart: whether any of its triangles is delivered; others get no texels
 };
 
+// What charts a component may have: those of the cube's faces (cut.h), or also one without a cut, where it is open
+// (disk_chart.h).
+enum class ChartKinds : std::uint8_t { faces, all };
+
 // Cuts a component into charts and lays them flat, these on the pool's threads; what only closes holes is gone then,
-// and charts are the rectangles around what is left. Throws as cut() and flatten() do.
-[[nodiscard]] FlatCharts lay_flat(const AtlasComponent& component, Progress& progress, mesh::ThreadPool& pool);
+// and charts are the rectangles around what is left. An open component has one chart where that costs no more than a
+// fifth more texels than six. Throws as cut() and flatten() do.
+[[nodiscard]] FlatCharts lay_flat(const AtlasComponent& component, ChartKinds kinds, Progress& progress,
+                                  mesh::ThreadPool& pool);
 
 } // namespace orbis::texture

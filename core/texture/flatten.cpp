@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/texture/coarse_warp.h"
 #include "core/texture/density.h"
+#include "core/texture/harmonic.h"
 #include "core/texture/plane_energy.h"
 #include "core/texture/untangle.h"
 
@@ -113,9 +114,10 @@ void lower(PlaneMesh& mesh, int sweeps) {
   settle_in_rectangle(mesh, last_sweeps);
 }
 
-// From the square of the central projection to the rectangle of the surface's own size. Returns false where a triangle
+// From the square of the start to the rectangle of the surface's own size. Returns false where a triangle
 // cannot be laid out.
-bool flatten_chart(PlaneMesh& mesh) {
+bool flatten_chart(PlaneMesh& mesh, FlatStart start) {
+  if (start == FlatStart::outlines && !lay_harmonically(mesh)) return false;
   double area = 0;
   for (const PlaneReference& r : mesh.references) area += r.area;
   for (FlatPoint& p : mesh.points) p = {std::sqrt(area) * p.x, std::sqrt(area) * p.y};
@@ -158,11 +160,12 @@ std::vector<std::size_t> sparse_charts(std::span<const ChartMesh> charts) {
 
 } // namespace
 
-void flatten(FlatCharts& charts, std::span<const Vec3d> positions, std::size_t delivered, mesh::ThreadPool& pool) {
+void flatten(FlatCharts& charts, std::span<const Vec3d> positions, std::size_t delivered, FlatStart start,
+             mesh::ThreadPool& pool) {
   std::vector<ChartMesh> meshes = split(charts, positions, delivered);
   std::vector<std::uint8_t> is_flat(meshes.size()); // no exception may leave a pool's loop
   pool.for_blocks(meshes.size(), 1,
-                  [&](std::size_t c, std::size_t) { is_flat[c] = flatten_chart(meshes[c].mesh) ? 1 : 0; });
+                  [&](std::size_t c, std::size_t) { is_flat[c] = flatten_chart(meshes[c].mesh, start) ? 1 : 0; });
   if (std::ranges::find(is_flat, 0) != is_flat.end())
     throw Error(ErrorCode::not_certified, "a triangle at a border of the cube's faces has no room in its chart");
   for (const int exponent : heavier_exponents) {

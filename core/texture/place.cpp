@@ -231,11 +231,13 @@ private:
     return gutter;
   }
 
-  // A few charts may fit a lower page better; many fill a square as well.
+  // A few charts may fit a lower page better, and a single one may be a band; many fill a square as well.
   [[nodiscard]] std::vector<Extent> shapes(std::size_t charts) const {
-    constexpr int shapes_at_most = 64;
+    constexpr int shapes_at_most = 64, lowest_of_many = 32, lowest_of_few = 4;
+    constexpr std::size_t few_charts = 8;
+    const int lowest = charts < few_charts ? lowest_of_few : charts < many_charts ? lowest_of_many : shapes_at_most;
     std::vector<Extent> out{{width_, width_ / 4 * 4}};
-    for (int part = shapes_at_most - 1; charts < many_charts && 2 * part >= shapes_at_most; --part)
+    for (int part = shapes_at_most - 1; part >= lowest; --part)
       out.push_back({width_, multiple_of_4(width_ * part / double{shapes_at_most})});
     return out;
   }

@@ -42,17 +42,6 @@ double seam_length(const CutMesh& mesh, std::span<const Vec3d> positions) {
   return length;
 }
 
-// (1/s1^2 + 1/s2^2) / 2 of the map to the atlas is |map back to the surface|^2 / 2.
-double squared_stretch(const std::array<Vec3d, 3>& p, const std::array<RasterPoint, 3>& q, double texels) {
-  double sum = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-    const double cosine = (q[i].x - q[k].x) * (q[j].x - q[k].x) + (q[i].y - q[k].y) * (q[j].y - q[k].y);
-    sum += cosine * squared_norm(p[i] - p[j]);
-  }
-  return sum / (8 * texels * texels);
-}
-
 } // namespace
 
 AtlasQuality measure_atlas(const CutMesh& mesh, const mesh::TriangleMesh& surface) {

@@ -35,7 +35,7 @@ struct Spheres {
       components.push_back({mesh.triangles, mesh.triangles, grid, positions[i], mesh.triangles.size(),
                             i * static_cast<std::uint32_t>(grid.size()),
                             i * static_cast<std::uint32_t>(mesh.triangles.size()), i % pages});
-      charts.push_back(lay_flat(components.back(), progress, pool));
+      charts.push_back(lay_flat(components.back(), ChartKinds::faces, progress, pool));
     }
   }
 };
@@ -183,7 +183,7 @@ TEST_CASE("triangles that only close a hole are not delivered, and their charts 
   open.corners = std::span(whole.mesh.triangles).first(open.delivered);
   NoProgress progress;
   mesh::ThreadPool pool(1);
-  const FlatCharts charts = lay_flat(open, progress, pool);
+  const FlatCharts charts = lay_flat(open, ChartKinds::faces, progress, pool);
   const CutMesh mesh = place(std::span(&open, 1), std::span(&charts, 1), {.width = 512}).mesh;
   CHECK(mesh.charts.size() == 5);
   for (const std::uint32_t parent : mesh.parent) CHECK(parent < open.delivered);

@@ -127,10 +127,11 @@ inline SphereMesh jittered(SphereMesh mesh, double fraction, std::mt19937& rando
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     const Vec3d before = mesh.points[v];
     const Vec3d direction = random_vector(random);
-    for (double step = fraction; step > 1e-7; step /= 2) {
-      mesh.points[v] = normalized(before + direction * step);
-      if (valid(v)) break;
-      mesh.points[v] = before;
+    double step = fraction;
+    mesh.points[v] = normalized(before + direction * step);
+    while (!valid(v)) {
+      step /= 2;
+      mesh.points[v] = step > 1e-7 ? normalized(before + direction * step) : before;
     }
   }
   return mesh;
