@@ -1,24 +1,31 @@
 #include "api/events.h"
 
+#include <vector>
+
 #include "api/json.h"
 
 namespace orbis::api {
 namespace {
 
-std::string event(const Job& job, std::string_view type, const Json& data) {
-  return "id: " + std::to_string(job.version) + "\nevent: " + std::string(type) + "\ndata: " + dump(data) + "\n\n";
+std::string event(std::string_view type, const Json& data) {
+  return "event: " + std::string(type) + "\ndata: " + dump(data) + "\n\n";
 }
 
 } // namespace
 
 std::string events_between(const Job* before, const Job& after) {
   const Json json = to_json(after);
-  std::string text;
+  std::vector<std::string> events;
   const bool stage_changed =
       after.progress && (before == nullptr || !before->progress || before->progress->stage != after.progress->stage);
-  if (stage_changed) text += event(after, "stage", json["progress"]);
-  if (after.progress && !is_final(after.state)) text += event(after, "progress", json["progress"]);
-  if (before == nullptr || before->state != after.state) text += event(after, "state", json);
+  if (stage_changed) events.push_back(event("stage", json["progress"]));
+  if (after.progress && !is_final(after.state)) events.push_back(event("progress", json["progress"]));
+  if (before == nullptr || before->state != after.state) events.push_back(event("state", json));
+  std::string text;
+  for (const std::string& each : events) {
+    if (&each == &events.back()) text.append("id: ").append(std::to_string(after.version)).append("\n");
+    text += each;
+  }
   return text;
 }
 

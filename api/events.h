@@ -11,8 +11,8 @@
 
 namespace orbis::api {
 
-// The events that lead from `before` to `after`: state, stage, progress, whichever applies, each with after's version
-// as its id. With no `before` all that is true now.
+// The events that lead from `before` to `after`: stage, progress, state, whichever applies. The last one has after's
+// version as its id: whoever saw only some of them gets all of them again. With no `before` all that is true now.
 [[nodiscard]] std::string events_between(const Job* before, const Job& after);
 
 // A stream of a job's events from its version `last_seen` on, which ends after the event of its final state.

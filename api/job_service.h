@@ -60,9 +60,10 @@ public:
   // One of the job's maps, by its file name; nothing for any other name.
   [[nodiscard]] virtual std::optional<StoredFile> map(std::string_view id, std::string_view name) = 0;
 
+  // Whether an upload is worth reading: there is a place in the queue, or a job with this Idempotency-Key is known.
+  [[nodiscard]] virtual bool has_room(std::string_view idempotency_key) = 0;
   // These answer from memory, whatever the load.
   [[nodiscard]] virtual bool draining() const = 0;
-  [[nodiscard]] virtual bool queue_full() const = 0;
   [[nodiscard]] virtual std::chrono::seconds retry_after() const = 0; // when a slot in the queue may be free
   [[nodiscard]] virtual std::string metrics() const = 0;              // Prometheus text format
 };

@@ -53,6 +53,12 @@ std::string server_timing(const Timing& timing) {
   return text;
 }
 
+// A ULID: 26 digits in base 32.
+bool is_job_id(std::string_view text) {
+  constexpr std::string_view digits = "0123456789ABCDEFGHJKMNPQRSTVWXYZ";
+  return text.size() == 26 && text.find_first_not_of(digits) == std::string_view::npos;
+}
+
 JobQuery parse_job_query(const Request& request) {
   JobQuery query;
   for (const auto& [name, value] : request.query) {
@@ -71,6 +77,8 @@ JobQuery parse_job_query(const Request& request) {
         throw Refused(Refusal::bad_request, "'limit' is a number from 1 to 100");
     } else if (name == "cursor") {
       query.cursor = value;
+      if (!value.empty() && !is_job_id(value))
+        throw Refused(Refusal::bad_request, "'cursor' is the 'next_cursor' of an earlier page");
     } else {
       throw Refused(Refusal::bad_request,
                     "there is no parameter '" + name.substr(0, 64) + "'; there are state, limit and cursor");
@@ -187,7 +195,7 @@ std::optional<Response> Router::refuse_early(const Request& head) {
     if (!is_upload(head.method, head.path)) return handle(head);
     check_key(head);
     check_media_type(head);
-    check_capacity();
+    check_capacity(head);
     return std::nullopt;
   } catch (const Refused& refused) {
     return problem_response(refused.problem());
@@ -263,9 +271,10 @@ void Router::check_key(const Request& request) const {
   if (!accepted) throw Refused(Refusal::forbidden, "this key is not accepted here");
 }
 
-void Router::check_capacity() const {
+void Router::check_capacity(const Request& request) const {
   if (jobs_.draining()) throw Refused(Refusal::draining, "the service is shutting down; try again soon");
-  if (jobs_.queue_full()) throw Refused(Refusal::queue_full, "all places in the queue are taken; try again later");
+  if (!jobs_.has_room(request.header("Idempotency-Key")))
+    throw Refused(Refusal::queue_full, "all places in the queue are taken; try again later");
 }
 
 Response Router::readiness() const {
@@ -294,7 +303,6 @@ template <class Done> Job Router::wait_until(Job job, std::chrono::milliseconds 
 
 Response Router::post_job(const Request& request, Submission (*parse)(const Request&)) {
   check_media_type(request);
-  check_capacity();
   const auto wait = preferred_wait(request.header("Prefer"));
   Job job = jobs_.submit(parse(request));
   const std::string address = "/v1/jobs/" + job.id;
@@ -390,7 +398,7 @@ Response Router::result_of(const Request& request, const Job& job, JobFile kind)
   if (kind == JobFile::result && response.status < 400) {
     response.set("Content-Disposition",
                  "attachment; filename=\"orbis-" + job.id + std::string(traits.download_suffix) + "\"");
-    response.set("Server-Timing", server_timing(job.timing));
+    if (const std::string timing = server_timing(job.timing); !timing.empty()) response.set("Server-Timing", timing);
   }
   return response;
 }

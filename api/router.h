@@ -36,7 +36,7 @@ private:
   [[nodiscard]] Response route(const Request& request);
   [[nodiscard]] Response job_route(const Request& request, std::string_view id, std::string_view rest);
   void check_key(const Request& request) const;
-  void check_capacity() const;
+  void check_capacity(const Request& request) const;
 
   // Starts the job that a POST to /v1/jobs or /v1/morphs asks for.
   [[nodiscard]] Response post_job(const Request& request, Submission (*parse)(const Request&));

@@ -39,7 +39,17 @@ Json parse_options_part(const Part& part) {
   return json;
 }
 
-std::string option_text(const Json& value) { return value.is_string() ? value.get<std::string>() : dump(value); }
+// A list of words or numbers is what a query would name with commas between.
+std::string option_text(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  const bool is_list = value.is_array() && std::ranges::all_of(value, [](const Json& item) {
+                         return item.is_string() || item.is_number();
+                       });
+  if (!is_list) return dump(value);
+  std::string text;
+  for (const Json& item : value) text += (text.empty() ? "" : ",") + option_text(item);
+  return text;
+}
 
 // Collects every bad option, so that the caller can mend them all at once.
 Options parse_options(const Request& request, const Part* options_part) {
@@ -138,11 +148,13 @@ Submission parse_submission(const Request& request) {
 }
 
 Submission parse_morph(const Request& request) {
+  for (const std::string_view name : {"a", "b"}) {
+    if (std::ranges::find(request.parts, name, &Part::name) == request.parts.end())
+      refuse(Refusal::bad_request,
+             "a morph takes two models: send them as the parts 'a' and 'b' of multipart/form-data");
+  }
   Submission submission = parse_parts(request, "a");
   const auto second = std::ranges::find(submission.files, std::string_view("b"), &Part::name);
-  if (submission.model.name.empty() || second == submission.files.end()) {
-    refuse(Refusal::bad_request, "a morph takes two models: send them as the parts 'a' and 'b' of multipart/form-data");
-  }
   if (!submission.options.morph_to.empty()) {
     refuse(Refusal::bad_request, "the second model is the part 'b': 'morph_to' is for a job with one model");
   }

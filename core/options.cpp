@@ -97,37 +97,48 @@ constexpr std::array<std::string_view, 2> topologies{"repair", "strict"};
 constexpr std::array<std::string_view, 4> compressions{"none", "draco", "meshopt", "quantized"};
 constexpr std::array<std::string_view, 2> outputs{"glb", "zip"};
 
+[[noreturn]] void refuse_lods(std::string_view list, const std::string& why) {
+  throw Error(ErrorCode::invalid_option, "option 'lods' cannot be '" + std::string(list.substr(0, 64)) + "': " + why,
+              "lods");
+}
+
 // "0.25", "5000" or "deviation:0.1".
-LodTarget lod_target(std::string_view name, std::string_view list, std::string_view text) {
+LodTarget lod_target(std::string_view list, std::string_view text) {
+  const std::string item = std::string("'").append(text.substr(0, 64)).append("' ");
   constexpr std::string_view deviation = "deviation:";
   const bool is_deviation = text.starts_with(deviation);
   if (is_deviation) text.remove_prefix(deviation.size());
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !(value > 0)) refuse(name, list);
+  if (error != std::errc{} || end != text.data() + text.size() || !(value > 0))
+    refuse_lods(list, item + "is neither a number above 0 nor 'deviation:' with one");
   if (is_deviation) {
-    if (value > 100) refuse(name, list);
+    if (value > 100) refuse_lods(list, item + "is more than 100 per cent of the bounding box's diagonal");
     return {LodTarget::Kind::deviation, value};
   }
   if (value <= 1) return {LodTarget::Kind::ratio, value};
-  if (value < 4 || value > 4e9 || value != std::floor(value)) refuse(name, list);
+  if (value < 4 || value > 4e9 || value != std::floor(value))
+    refuse_lods(list, item + "is neither a part up to 1 nor a whole number of triangles, four at least");
   return {LodTarget::Kind::triangles, value};
 }
 
-std::vector<LodTarget> lod_targets(std::string_view name, std::string_view list) {
+std::vector<LodTarget> lod_targets(std::string_view list) {
   std::vector<LodTarget> targets;
   for (std::string_view rest = list; !rest.empty();) {
     const std::size_t comma = std::min(rest.find(','), rest.size());
-    targets.push_back(lod_target(name, list, rest.substr(0, comma)));
+    targets.push_back(lod_target(list, rest.substr(0, comma)));
     rest.remove_prefix(std::min(comma + 1, rest.size()));
     // Of one kind they must get coarser.
     for (const LodTarget& before : std::span(targets).first(targets.size() - 1)) {
       const LodTarget& last = targets.back();
       const bool grows = last.value > before.value;
-      if (last.kind == before.kind && grows != (last.kind == LodTarget::Kind::deviation)) refuse(name, list);
+      if (last.kind == before.kind && grows != (last.kind == LodTarget::Kind::deviation))
+        refuse_lods(list, "levels go from fine to coarse: parts and numbers down, deviations up");
     }
   }
-  if (targets.size() > most_lods) refuse(name, list);
+  if (targets.size() > most_lods)
+    refuse_lods(list,
+                "it has " + std::to_string(targets.size()) + " levels; " + std::to_string(most_lods) + " are the most");
   return targets;
 }
 
@@ -333,7 +344,7 @@ void set_option(Options& options, std::string_view name, std::string_view value)
   } else if (name == "output") {
     options.output = choice<OutputForm>(name, value, outputs);
   } else if (name == "lods") {
-    options.lods = lod_targets(name, value);
+    options.lods = lod_targets(value);
   } else if (name == "remesh") {
     options.remesh = remesh_target(name, value);
   } else if (name == "sphere_morph") {

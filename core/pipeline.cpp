@@ -12,7 +12,7 @@
 #include "core/steps/likeness.h"
 #include "core/steps/measure.h"
 #include "core/steps/morph.h"
-#include "core/steps/paint.h"
+#include "core/steps/preview.h"
 #include "core/steps/remesh.h"
 #include "core/steps/snap_and_cut.h"
 #include "core/steps/sphere_morph.h"
@@ -85,7 +85,7 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
     add_sphere_morph(asset, surface, delivery);
     for (DetailLevel& level : levels) add_sphere_morph(asset, surface, level.delivery);
   }
-  result.preview_png = preview(asset, surface, sphere.cut, maps.pages, request.options.threads);
+  result.preview_png = preview(asset, surface, sphere.cut, delivery, maps.pages, request.options.threads);
   result.atlas_png = atlas_picture(maps, request.options);
   result.maps = std::move(maps.files);
   if (request.options.compression == Compression::quantized) quantise(delivery, levels);

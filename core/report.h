@@ -79,7 +79,7 @@ struct Report {
     std::uint64_t charts = 0, cut_triangles = 0, added_vertices = 0;
     double utilisation = 0; // texels covered by triangles / all texels
     texture::AtlasQuality quality;
-    std::string source; // "pattern", "cubemap", "base_color"
+    std::string source; // "pattern", "cubemap", "base_color", "none"
   } atlas;
   // A level of detail, as measured on its delivered triangles. Lengths are in per cent of the model's diagonal.
   struct Level {

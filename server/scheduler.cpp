@@ -136,6 +136,13 @@ std::optional<Job> Scheduler::earlier_submission(const std::string& key, const s
   return find_locked(earlier->job.id);
 }
 
+bool Scheduler::has_room(std::string_view idempotency_key) {
+  if (queued_ < settings_.queue) return true;
+  if (idempotency_key.empty()) return false;
+  const Lock lock(mutex_);
+  return store_.find_by_key(idempotency_key).has_value();
+}
+
 Job Scheduler::submit(api::Submission submission) {
   const Lock lock(mutex_);
   if (draining_) throw api::Refused(api::Refusal::draining, "the service is shutting down; try again soon");
@@ -144,7 +151,7 @@ Job Scheduler::submit(api::Submission submission) {
   if (settings_.cache) {
     if (auto answered = answer_from_cache(stored)) return *std::move(answered);
   }
-  if (queue_full()) {
+  if (queued_ >= settings_.queue) {
     metrics_.job_refused();
     throw api::Refused(api::Refusal::queue_full,
                        "all " + std::to_string(settings_.queue) + " places in the queue are taken; try again later");

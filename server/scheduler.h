@@ -53,8 +53,8 @@ public:
   [[nodiscard]] std::optional<api::Job> cancel(std::string_view id) override;
   [[nodiscard]] std::optional<api::StoredFile> file(std::string_view id, api::JobFile kind) override;
   [[nodiscard]] std::optional<api::StoredFile> map(std::string_view id, std::string_view name) override;
+  [[nodiscard]] bool has_room(std::string_view idempotency_key) override;
   [[nodiscard]] bool draining() const override { return draining_; }
-  [[nodiscard]] bool queue_full() const override { return queued_ >= settings_.queue; }
   [[nodiscard]] std::chrono::seconds retry_after() const override;
   [[nodiscard]] std::string metrics() const override;
 

@@ -1,11 +1,13 @@
 #include "core/asset/materials.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
 #include <tuple>
 #include <utility>
 
+#include "core/asset/document.h"
 #include "core/asset/extensions.h"
 
 namespace orbis::asset {
@@ -164,6 +166,18 @@ const Json* texture_info(const Json& material, TextureSlot slot) {
     break;
   }
   return info && info->is_object() ? info : nullptr;
+}
+
+std::array<float, 3> base_color_factor(const Asset& asset, const Primitive& primitive) {
+  std::array<float, 3> out{1, 1, 1};
+  if (!primitive.material) return out;
+  const Json& material = asset.document->json["materials"][*primitive.material];
+  const Json* factor = find_path(material, "extensions", specular_glossiness, "diffuseFactor");
+  if (!factor) factor = find_path(material, "pbrMetallicRoughness", "baseColorFactor");
+  if (!factor || !factor->is_array() || factor->size() < out.size()) return out;
+  for (std::size_t k = 0; k < out.size(); ++k)
+    if ((*factor)[k].is_number()) out[k] = std::clamp((*factor)[k].get<float>(), 0.0F, 1.0F);
+  return out;
 }
 
 void assign_atlas(Json& document, const std::vector<AtlasUser>& users) {

@@ -1,6 +1,7 @@
 // Materials: where they keep their textures, and how the atlas takes their place.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstdint>
 #include <map>
@@ -15,6 +16,9 @@ namespace orbis::asset {
 // The texture info of a slot; for base_color also the diffuse texture of the older KHR_materials_pbrSpecularGlossiness.
 // Null where there is none.
 [[nodiscard]] const Json* texture_info(const Json& material, TextureSlot slot);
+
+// The base colour factor of a primitive's material, linear RGB; 1 without one.
+[[nodiscard]] std::array<float, 3> base_color_factor(const Asset& asset, const Primitive& primitive);
 
 // What becomes of a material on the atlas.
 struct AtlasLook {

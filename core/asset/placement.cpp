@@ -77,11 +77,10 @@ Placement local_placement(const JsonReader& reader, const Json& node) {
   return {rotation * Matrix3{{{s[0], 0, 0}, {0, s[1], 0}, {0, 0, s[2]}}}, {t[0], t[1], t[2]}};
 }
 
-std::vector<Placement> first_placements(const Asset& asset) {
+std::vector<std::vector<Placement>> placements_of(const Asset& asset) {
   const Json& document = asset.document->json;
   const JsonReader reader(document);
-  std::vector<Placement> out(array_size(document, "meshes"));
-  std::vector<bool> placed(out.size());
+  std::vector<std::vector<Placement>> out(array_size(document, "meshes"));
   std::vector<std::pair<std::size_t, Placement>> waiting; // node, and where its parent is
   const auto add = [&](const std::vector<std::size_t>& nodes, const Placement& parent) {
     for (auto n = nodes.rbegin(); n != nodes.rend(); ++n) waiting.emplace_back(*n, parent);
@@ -93,11 +92,11 @@ std::vector<Placement> first_placements(const Asset& asset) {
     const Json& node = document["nodes"][n];
     const Placement here = parent.after(local_placement(reader, node));
     const auto mesh = reader.integer(node, "mesh");
-    if (mesh && !placed[*mesh] && !find(node, "skin")) {
-      out[*mesh] = here;
-      placed[*mesh] = true;
-    }
+    if (mesh && !find(node, "skin")) out[*mesh].push_back(here);
     if (const Json* children = find(node, "children")) add(children->get<std::vector<std::size_t>>(), here);
+  }
+  for (std::vector<Placement>& of_mesh : out) {
+    if (of_mesh.empty()) of_mesh.emplace_back();
   }
   return out;
 }

@@ -21,8 +21,9 @@ struct Placement {
   [[nodiscard]] Placement after(const Placement& inner) const;
 };
 
-// Where the default scene shows each mesh of the document first (without scenes: the nodes that have no parent). A mesh
-// that it does not show, or that joints place, stays where it is. One for each mesh.
-[[nodiscard]] std::vector<Placement> first_placements(const Asset& asset);
+// Where the default scene shows each mesh of the document (without scenes: the nodes that have no parent), in the order
+// of its nodes; each node counts once, whatever EXT_mesh_gpu_instancing makes of it. A mesh that it does not show, or
+// that joints place, stays where it is. One or more for each mesh.
+[[nodiscard]] std::vector<std::vector<Placement>> placements_of(const Asset& asset);
 
 } // namespace orbis::asset

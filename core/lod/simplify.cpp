@@ -46,7 +46,9 @@ public:
       if (collapsed_since_filled_ == 0 && !(target.triangles > 0 && concede(target.triangles))) break;
       fill_queue();
     }
-    concessions_.is_short = target.triangles > 0 && mesh_.triangle_count > target.triangles && !stopped_by_bound_;
+    const bool has_too_many = target.triangles > 0 && mesh_.triangle_count > target.triangles && !stopped_by_bound_;
+    // Levels only get coarser: after one that is coarser than the bound, there is none within it.
+    concessions_.is_short = has_too_many || (target.deviation > 0 && std::sqrt(largest_) > target.deviation);
     for (const Point& p : mesh_.points)
       if (p.is_alive) concessions_.outline = std::max(concessions_.outline, double{p.drift});
     Level level = extract(full_, mesh_);

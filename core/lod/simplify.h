@@ -28,7 +28,7 @@ struct Concessions {
   std::uint64_t lost_components = 0; // components left out, the smallest first
   std::uint64_t lost_triangles = 0;  // that those had
   double largest_lost = 0;           // the diagonal of the largest one's bounding box, fraction of the model's
-  bool is_short = false;             // the target was not reached for all that
+  bool is_short = false;             // not reached for all that, or a level before it was coarser already
 };
 
 struct Level {

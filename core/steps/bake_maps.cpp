@@ -10,10 +10,13 @@
 namespace orbis {
 
 std::vector<std::byte> atlas_picture(const BakedMaps& maps, const Options& options) {
-  for (const MapFile& file : maps.files) {
-    if (file.name == "base_color.png" || file.name == "base_color-1.png") return file.bytes;
-  }
-  return asset::encode_png(maps.pages.front(), texture::Encoding::srgb, options.threads);
+  const auto largest = std::ranges::max_element(
+      maps.pages, {}, [](const texture::Image& page) { return std::uint64_t{page.width} * page.height; });
+  std::string name = "base_color";
+  if (maps.pages.size() > 1) name.append("-").append(std::to_string(largest - maps.pages.begin() + 1));
+  const auto file = std::ranges::find(maps.files, name.append(".png"), &MapFile::name);
+  if (file != maps.files.end()) return file->bytes;
+  return asset::encode_png(*largest, texture::Encoding::srgb, options.threads);
 }
 
 BakedMaps bake_maps(const Request& request, const Limits& limits, const SurfaceInAtlas& from,

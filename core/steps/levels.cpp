@@ -78,7 +78,10 @@ void note_concessions(const Report::Level& level, const std::string& where, Repo
          std::to_string(level.lost_components) +
              " components had to be left out, the smallest first; the largest of them measures " +
              rounded(level.lost_size) + " % of the model's diagonal");
-  if (!level.reached)
+  if (level.reached) return;
+  if (level.target.starts_with("deviation:"))
+    note("lod-short", "the level before it is coarser than this one was to be, and levels only get coarser");
+  else
     note("lod-short", "the level has " + std::to_string(level.triangles) +
                           " triangles, more than asked for: no edge is left that can be collapsed");
 }

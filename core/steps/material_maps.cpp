@@ -40,12 +40,22 @@ MaterialMaps::MaterialMaps(const BakeJob& job, PageBaking& page)
     base_color_ = textures_of(job.asset, job.delivery, TextureSlot::base_color, job.report);
     colored_ = bakes_vertex_colors(job.asset, job.delivery);
   }
-  shows_own_ = any(base_color_) || any(colored_);
-  job.report.atlas.source = source_name(job.options(), shows_own_);
+  const bool has_own = any(base_color_) || any(colored_);
+  job.report.atlas.source = source_name(job.options(), has_own);
+  // Where the model has textures that cannot be read here, they stay: no pattern goes over them.
+  const bool keeps_own = job.options().texture == TextureSource::automatic && names_base_color();
+  if (!has_own && keeps_own) job.report.atlas.source = "none";
+  shows_own_ = has_own || keeps_own;
   uploaded_ = uploaded_images(job.request, job.limits);
   metallic_roughness_ = planned(Map::metallic_roughness, TextureSlot::metallic_roughness);
   occlusion_ = planned(Map::occlusion, TextureSlot::occlusion);
   emissive_ = planned(Map::emissive, TextureSlot::emissive);
+}
+
+bool MaterialMaps::names_base_color() const {
+  return std::ranges::any_of(job_.asset.primitives, [this](const asset::Primitive& p) {
+    return asset::names_texture(job_.asset, p, TextureSlot::base_color);
+  });
 }
 
 SlotTextures MaterialMaps::planned(Map map, TextureSlot slot) const {

@@ -21,6 +21,7 @@ public:
   void bake_emissive();
 
 private:
+  [[nodiscard]] bool names_base_color() const;
   [[nodiscard]] SlotTextures planned(Map map, asset::TextureSlot slot) const;
   [[nodiscard]] texture::Image resample(const SlotTextures& textures, const DecodedImages& images,
                                         const std::vector<bool>& colored, texture::Encoding encoding);

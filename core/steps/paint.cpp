@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "core/asset/image_codec.h"
-#include "core/asset/placement.h"
 #include "core/texture/bake.h"
-#include "core/texture/preview.h"
 
 namespace orbis {
 namespace {
@@ -16,7 +13,6 @@ using texture::Image;
 
 constexpr std::array<std::string_view, 6> cube_names{"px", "nx", "py", "ny", "pz", "nz"};
 constexpr std::string_view equirectangular_name = "equirectangular";
-constexpr std::uint32_t preview_width = 1024, preview_height = 512;
 
 // The file whose name without its ending is `stem`, or nothing.
 const std::vector<std::byte>* find_file(const Request& request, std::string_view stem) {
@@ -36,20 +32,6 @@ Image decode_file(const Request& request, std::string_view stem, const Limits& l
         "texture");
   }
   return asset::decode_image(*bytes, limits.max_image_pixels, stem);
-}
-
-bool is_finite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
-
-// Each mesh where the scene shows it first. Where that is beyond float, all stay where they are.
-mesh::TriangleMesh in_scene(const asset::Asset& asset, const Surface& surface) {
-  const std::vector<asset::Placement> placements = asset::first_placements(asset);
-  mesh::TriangleMesh out = surface.mesh;
-  for (const Component& c : surface.components) {
-    for (std::uint32_t v = c.first_vertex; v < c.end_vertex(); ++v) {
-      out.positions[v] = Vec3f(placements[c.mesh](Vec3d(surface.mesh.positions[v])));
-    }
-  }
-  return std::ranges::all_of(out.positions, is_finite) ? out : surface.mesh;
 }
 
 } // namespace
@@ -85,14 +67,6 @@ Image paint(std::span<const Image> uploaded, const texture::TexelMap& map, const
             std::uint32_t page, const Progress& progress, mesh::ThreadPool& pool) {
   return uploaded.empty() ? texture::bake_pattern(map, cut, page, progress, pool)
                           : texture::bake_cube_map(map, cut, uploaded, progress, pool);
-}
-
-std::vector<std::byte> preview(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut,
-                               std::span<const Image> pages, std::uint32_t threads) {
-  const mesh::TriangleMesh shown = in_scene(asset, surface);
-  mesh::ThreadPool pool(threads);
-  const Image picture = texture::draw_side_by_side(shown, cut, pages, preview_width, preview_height, pool);
-  return asset::encode_png(picture, texture::Encoding::srgb, threads);
 }
 
 } // namespace orbis

@@ -1,4 +1,4 @@
-// Pictures that do not come from the model: the test pattern, an uploaded cube map; and the preview.
+// Pictures that do not come from the model: the test pattern, an uploaded cube map.
 #pragma once
 
 #include <cstddef>
@@ -30,11 +30,5 @@ namespace orbis {
 [[nodiscard]] texture::Image paint(std::span<const texture::Image> uploaded, const texture::TexelMap& map,
                                    const texture::CutMesh& cut, std::uint32_t page, const Progress& progress,
                                    mesh::ThreadPool& pool);
-
-// The sphere and the model side by side, with the atlas on both, as PNG. Each mesh is seen where the scene shows it
-// first; skinned ones in their bind pose.
-[[nodiscard]] std::vector<std::byte> preview(const asset::Asset& asset, const Surface& surface,
-                                             const texture::CutMesh& cut, std::span<const texture::Image> pages,
-                                             std::uint32_t threads);
 
 } // namespace orbis

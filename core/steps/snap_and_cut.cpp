@@ -176,13 +176,21 @@ public:
     for (const ComponentCharts& c : components_)
       out.points.insert(out.points.end(), c.sphere().begin(), c.sphere().end());
     note_turns(report);
-    note_density(report);
     describe(surface_, out.cut, report);
+    note_density(report);
     return out;
   }
 
 private:
   void note_density(Report& report) const {
+    constexpr double much = 1.25;
+    if (const double density = std::sqrt(report.atlas.quality.texels_per_area);
+        size_.texel_density > 0 && density > much * size_.texel_density) {
+      report.notes.push_back({"texel-density-raised",
+                              "the atlas has " + std::to_string(density) + " texels per unit of length, not " +
+                                  std::to_string(size_.texel_density) + ": no chart can be smaller",
+                              "texel_density"});
+    }
     if (placed_.texel_density >= size_.texel_density) return;
     report.notes.push_back({"texel-density-lowered",
                             "the atlas has " + std::to_string(placed_.texel_density) +

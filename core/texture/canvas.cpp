@@ -200,7 +200,9 @@ private:
     const double length = norm(normal);
     normal = length > 0 ? normal * (facing / length) : view_z;
     const double level = mip_level_of(corners_of(triangle, points_), in_atlas);
-    return shaded(between_levels(samplers_[shape_.mesh.page_of(t)], place.x, place.y, level), normal);
+    Light color = between_levels(samplers_[shape_.mesh.page_of(t)], place.x, place.y, level);
+    for (std::size_t k = 0; k < 3 && !shape_.tints.empty(); ++k) color[k] *= shape_.tints[t][k];
+    return shaded(color, normal);
   }
 };
 

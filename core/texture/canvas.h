@@ -1,6 +1,7 @@
 // A small software renderer: triangles with the pages of an atlas, a z-buffer, two lights.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,10 +14,11 @@
 
 namespace orbis::texture {
 
-// The vertices of a cut mesh as they are to be drawn.
+// A cut mesh as it is to be drawn.
 struct Shape {
   const CutMesh& mesh;
-  std::vector<Vec3d> positions, normals; // one per vertex
+  std::vector<Vec3d> positions, normals;   // one per vertex
+  std::vector<std::array<float, 3>> tints; // one per triangle: what its texels are multiplied by; empty: 1
 };
 
 // Normals by the areas of the triangles around each point of the surface, the same at every copy of a point.

@@ -9,14 +9,6 @@
 namespace orbis::texture {
 namespace {
 
-Shape model_shape(const mesh::TriangleMesh& surface, const CutMesh& mesh) {
-  std::vector<Vec3d> positions;
-  positions.reserve(mesh.vertices.size());
-  for (const CutVertex& v : mesh.vertices) positions.push_back(interpolated(surface.positions, surface.triangles, v));
-  std::vector<Vec3d> normals = smooth_normals(mesh, positions);
-  return {mesh, std::move(positions), std::move(normals)};
-}
-
 std::uint32_t component_with_most_texels(const CutMesh& mesh) {
   std::vector<double> texels;
   for (const Chart& c : mesh.charts) {
@@ -29,18 +21,21 @@ std::uint32_t component_with_most_texels(const CutMesh& mesh) {
 // One component's triangles on its sphere, split until they look round.
 class RoundMesh {
 public:
-  RoundMesh(const CutMesh& mesh, std::uint32_t component) {
+  RoundMesh(const CutMesh& mesh, std::uint32_t component, std::span<const std::array<float, 3>> tints) {
     mesh_.charts = mesh.charts;
     mesh_.pages = mesh.pages;
     mesh_.points = mesh.points;
     mesh_.vertices = mesh.vertices;
     for (const CutVertex& v : mesh.vertices) points_.push_back(normalized(Vec3d(sphere::from_grid(v.sphere))));
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-      if (mesh.charts[mesh.chart[t]].component == component) split(mesh.triangles[t], mesh.chart[t]);
+      if (mesh.charts[mesh.chart[t]].component == component) {
+        split(mesh.triangles[t], mesh.chart[t]);
+        if (!tints.empty()) tints_.resize(mesh_.triangles.size(), tints[t]);
+      }
   }
 
   [[nodiscard]] Shape shape(const Rotation& rotation) const {
-    Shape out{mesh_, {}, {}};
+    Shape out{mesh_, {}, {}, tints_};
     for (const Vec3d& p : points_) out.positions.push_back(rotation(p));
     out.normals = out.positions;
     return out;
@@ -49,6 +44,7 @@ public:
 private:
   CutMesh mesh_;
   std::vector<Vec3d> points_;
+  std::vector<std::array<float, 3>> tints_;
 
   // The longest edge is halved while it is too long. Whether an edge is does not depend on the triangle, so neighbours
   // agree.
@@ -112,27 +108,34 @@ Rotation towards_model(const CutMesh& mesh, const Shape& model, std::uint32_t co
 
 } // namespace
 
+Shape shape_of(const mesh::TriangleMesh& surface, const CutMesh& mesh) {
+  std::vector<Vec3d> positions;
+  positions.reserve(mesh.vertices.size());
+  for (const CutVertex& v : mesh.vertices) positions.push_back(interpolated(surface.positions, surface.triangles, v));
+  std::vector<Vec3d> normals = smooth_normals(mesh, positions);
+  return {mesh, std::move(positions), std::move(normals), {}};
+}
+
 Image draw_model(const mesh::TriangleMesh& surface, const CutMesh& mesh, std::span<const Image> pages,
                  std::uint32_t width, std::uint32_t height, mesh::ThreadPool& pool) {
   Canvas canvas(width, height, pages, pool);
-  canvas.draw(model_shape(surface, mesh), {0, 0, width, height});
+  canvas.draw(shape_of(surface, mesh), {0, 0, width, height});
   return canvas.picture();
 }
 
 Image draw_sphere(const CutMesh& mesh, std::span<const Image> pages, std::uint32_t width, std::uint32_t height,
                   mesh::ThreadPool& pool) {
   Canvas canvas(width, height, pages, pool);
-  const RoundMesh round(mesh, component_with_most_texels(mesh));
+  const RoundMesh round(mesh, component_with_most_texels(mesh), {});
   canvas.draw(round.shape(Rotation{}), {0, 0, width, height});
   return canvas.picture();
 }
 
-Image draw_side_by_side(const mesh::TriangleMesh& surface, const CutMesh& mesh, std::span<const Image> pages,
-                        std::uint32_t width, std::uint32_t height, mesh::ThreadPool& pool) {
+Image draw_side_by_side(const CutMesh& mesh, const Shape& model, std::span<const Image> pages, std::uint32_t width,
+                        std::uint32_t height, mesh::ThreadPool& pool) {
   Canvas canvas(width, height, pages, pool);
-  const Shape model = model_shape(surface, mesh);
   const std::uint32_t component = component_with_most_texels(mesh);
-  const RoundMesh round(mesh, component);
+  const RoundMesh round(mesh, component, model.tints);
   // The model gets the width that it needs at full height, the sphere a square, and what is left over goes around them.
   const double wanted = std::clamp(aspect_of(model), 0.6, 2.0);
   const double side = std::min<double>(height, width / (1 + wanted));

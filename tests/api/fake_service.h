@@ -17,12 +17,15 @@ public:
   std::map<std::string, api::StoredFile, std::less<>> maps;
   std::vector<api::Submission> submissions;
   bool is_draining = false, is_full = false;
+  std::string known_key;
   // What happens to a submitted job at once.
   std::function<void(api::Job&)> on_submit = [](api::Job&) {};
   // What happens to a job while someone waits for it.
   std::function<void(api::Job&)> on_wait = [](api::Job&) {};
 
   api::Job submit(api::Submission submission) override {
+    if (is_draining) throw api::Refused(api::Refusal::draining, "shutting down");
+    if (!has_room(submission.idempotency_key)) throw api::Refused(api::Refusal::queue_full, "full");
     api::Job job;
     job.id = "01J0000000000000000000000" + std::to_string(jobs.size() % 10);
     job.created = api::Time(std::chrono::milliseconds(1'700'000'000'123));
@@ -72,7 +75,9 @@ public:
     return it == maps.end() ? std::nullopt : std::optional(it->second);
   }
   [[nodiscard]] bool draining() const override { return is_draining; }
-  [[nodiscard]] bool queue_full() const override { return is_full; }
+  [[nodiscard]] bool has_room(std::string_view idempotency_key) override {
+    return !is_full || (!idempotency_key.empty() && idempotency_key == known_key);
+  }
   [[nodiscard]] std::chrono::seconds retry_after() const override { return std::chrono::seconds(7); }
   [[nodiscard]] std::string metrics() const override { return "orbis_jobs_queued 0\n"; }
 };

@@ -1,9 +1,12 @@
 // The contract itself, and the shapes of what is made into JSON.
 #include <doctest/doctest.h>
 
+#include <set>
+
 #include "api/contract.h"
 #include "api/json.h"
 #include "api/openapi.h"
+#include "core/options.h"
 #include "core/report.h"
 
 using namespace orbis;
@@ -96,6 +99,22 @@ TEST_CASE("the schema checker sees what is wrong") {
   job = plain(api::to_json(full_job()));
   job["surprise"] = 1;
   CHECK_FALSE(test::against_schema(job, schema("Job")).empty());
+}
+
+TEST_CASE("every option is a query parameter of the contract, where it applies") {
+  const auto listed = [](const std::string& path) {
+    std::set<std::string> names;
+    for (const json& parameter : test::contract()["paths"][path]["post"]["parameters"])
+      if (parameter.contains("in") && parameter["in"] == "query") names.insert(parameter["name"]);
+    return names;
+  };
+  std::set<std::string> options;
+  for (const OptionInfo& option : option_table()) options.insert(std::string(option.name));
+  CHECK(listed("/v1/jobs") == options);
+  // A morph's second model is a part of the form, and it has the one target.
+  options.erase("morph_to");
+  options.erase("sphere_morph");
+  CHECK(listed("/v1/morphs") == options);
 }
 
 TEST_CASE("times are RFC 3339 in UTC with milliseconds") {

@@ -101,12 +101,38 @@ TEST_CASE_FIXTURE(Desk,
 
   CHECK(morph({part("a", "cow.glb", "glTF....")}).status == 400);
   CHECK(morph({part("b", "cow.glb", "glTF....")}).status == 400);
-  CHECK(morph({part("model", "", "glTF....")}).status == 400);
+  const auto single = morph({part("model", "", "glTF....")});
+  CHECK(single.status == 400);
+  CHECK(body_of(single)["detail"].get<std::string>().find("'a' and 'b'") != std::string::npos);
   CHECK(morph({part("a", "", "glTF...."), part("b", "b.glb", "not a model")}).status == 415);
   CHECK(morph({part("a", "", "glTF...."), part("b", "b.glb", "glTF....")}, {{"morph_to", "c.glb"}}).status == 400);
   CHECK(morph({part("a", "", "glTF...."), part("b", "b.glb", "glTF....")}, {{"features", "nose"}}).status == 422);
   CHECK(ask("GET", "/v1/morphs").status == 405);
   CHECK(ask("GET", "/v1/morphs").header("Allow") == "POST");
+}
+
+TEST_CASE_FIXTURE(Desk, "a list in the options part is what the query would have with commas") {
+  const auto response =
+      post({part("model", "m.glb", "glTF...."),
+            part("options", "",
+                 R"({"lods": [0.5, 0.25], "maps": ["normal", "position"], "features": [[[0,0,1],[0,0,2]]]})")});
+  CHECK(response.status == 202);
+  CHECK(body_of(response)["options"]["lods"] == "0.5,0.25");
+  CHECK(body_of(response)["options"]["maps"] == "normal,position");
+  CHECK(body_of(response)["options"]["features"] == "[[[0,0,1],[0,0,2]]]");
+}
+
+TEST_CASE_FIXTURE(Desk, "what is wrong with a list of levels is said") {
+  const auto why = [&](const std::string& lods) {
+    const auto response = post_model({{"lods", lods}});
+    CHECK(response.status == 422);
+    return body_of(response)["detail"].get<std::string>();
+  };
+  CHECK(why("2").find("four at least") != std::string::npos);
+  CHECK(why("0.1,0.5").find("from fine to coarse") != std::string::npos);
+  CHECK(why("deviation:101").find("100 per cent") != std::string::npos);
+  CHECK(why("0.9,0.8,0.7,0.6,0.5,0.4,0.3,0.2,0.1").find("8 are the most") != std::string::npos);
+  CHECK(why("0.5,half").find("'half'") != std::string::npos);
 }
 
 TEST_CASE_FIXTURE(Desk, "options come from the query and from the options part, and the query wins") {
@@ -274,6 +300,7 @@ TEST_CASE_FIXTURE(Desk, "pages of the list hold together, and every job is on on
   std::vector<std::string> seen;
   for (int page = 0; page < 3; ++page) {
     const auto response = ask("GET", "/v1/jobs", {}, {{"limit", "2"}, {"cursor", cursor}});
+    CHECK(ask("GET", "/v1/jobs", {}, {{"cursor", "foo"}}).status == 400);
     const json body = body_of(response);
     for (const json& item : body["items"]) seen.push_back(item["id"]);
     CHECK(response.header("Link").empty() == body["next_cursor"].is_null());
@@ -298,6 +325,12 @@ TEST_CASE_FIXTURE(Desk, "parameters of the list that make no sense are refused")
 TEST_CASE_FIXTURE(Desk, "a full queue is 429 and a service that shuts down 503, both with Retry-After") {
   service.is_full = true;
   CHECK(post_model().status == 429);
+  // An earlier job's key takes no place in the queue; others are refused before their model is read.
+  service.known_key = "k1";
+  api::Router router(service, settings);
+  CHECK_FALSE(router.refuse_early({"POST", "/v1/jobs", {}, {{"Idempotency-Key", "k1"}}, {}}).has_value());
+  CHECK(router.refuse_early({"POST", "/v1/jobs", {}, {{"Idempotency-Key", "k2"}}, {}}).value().status == 429);
+  CHECK(post_model({}, {{"Idempotency-Key", "k1"}}).status == 202);
   CHECK(ask("GET", "/readyz").status == 200);
   service.is_draining = true;
   const auto draining = post_model();
@@ -365,6 +398,11 @@ TEST_CASE_FIXTURE(Desk, "events tell of states, stages and progress, and end wit
   CHECK(all.find("\"stage\":\"decode\"") < all.find("\"stage\":\"refine\""));
   CHECK(all.find("event: progress") != std::string::npos);
   CHECK(all.find("id: 3\n") != std::string::npos);
+  // Of the events that come together the last one alone has the id: who missed one of them gets all of them again.
+  for (std::size_t at = all.find("id: "); at != std::string::npos; at = all.find("id: ", at + 1)) {
+    const std::string id = all.substr(at, all.find('\n', at) + 1 - at);
+    CHECK(all.find(id, at + 1) == std::string::npos);
+  }
   // The last event was seen: an EventSource that comes back is told to stop.
   CHECK(ask("GET", address + "/events", {{"Last-Event-ID", "3"}}).status == 204);
   CHECK(ask("GET", address + "/events", {{"Last-Event-ID", "x"}}).status == 400);

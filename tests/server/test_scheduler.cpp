@@ -130,7 +130,7 @@ TEST_CASE("the queue is bounded, and places are counted from 1") {
   service.runner.wait_started(1);
   CHECK(service.submit().queue_position == 1);
   CHECK(service.submit().queue_position == 2);
-  CHECK(service.scheduler->queue_full());
+  CHECK_FALSE(service.scheduler->has_room(""));
   CHECK(refusal_status([&] { (void)service.submit(); }) == 429);
   CHECK(service.scheduler->find(running.id)->state == JobState::running);
 }

@@ -255,6 +255,15 @@ TEST_CASE("with output=zip every level is a file of its own, named in the manife
   CHECK(process(request, {}, progress).glb == result.glb);
 }
 
+TEST_CASE("a bound that the level before has left behind is not reached, and said so") {
+  const Report report = run(glb_of(shapes::bumpy_sphere(4)), "100,deviation:0.001").report;
+  REQUIRE(report.levels.size() == 2);
+  CHECK(report.levels[0].reached);
+  CHECK(report.levels[1].triangles == report.levels[0].triangles);
+  CHECK_FALSE(report.levels[1].reached);
+  CHECK(std::ranges::count(report.notes, "lod-short", &Note::code) == 1);
+}
+
 TEST_CASE("the option takes parts, numbers and bounds, from fine to coarse") {
   Options options;
   set_option(options, "lods", "0.5,1000,deviation:0.05,deviation:0.2");

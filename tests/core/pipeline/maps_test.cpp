@@ -144,6 +144,21 @@ TEST_CASE("a pattern is multiplied by neither the base colour factor nor the ver
   CHECK_FALSE(has(json, "COLOR_0"));
 }
 
+TEST_CASE("a texture that cannot be read stays: no pattern goes over it, nor over what has none") {
+  GltfBuilder b = painted_sphere();
+  b.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] =
+      b.append("textures", Json{{"source", b.append("images", Json{{"uri", "elsewhere.png"}})}});
+  b.json["meshes"][0]["primitives"][0]["attributes"].erase("COLOR_0");
+  const Json before = b.json["materials"][0]["pbrMetallicRoughness"];
+  const Result result = run(b, {});
+  CHECK(result.report.atlas.source == "none");
+  CHECK(std::ranges::count(result.report.notes, "texture-kept", &Note::code) == 1);
+  const Json json = json_of(result.glb);
+  const Json& after = json["materials"][0]["pbrMetallicRoughness"];
+  CHECK(after["baseColorFactor"] == before["baseColorFactor"]);
+  CHECK(after["baseColorTexture"].value("texCoord", 0) == 0);
+}
+
 TEST_CASE("vertex colours stay where a variant's material needs them") {
   GltfBuilder b = painted_sphere();
   b.append("materials", Json{{"name", "other"}});

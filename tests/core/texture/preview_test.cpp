@@ -77,7 +77,8 @@ TEST_CASE("a sphere drawn as a model and drawn as the sphere look the same") {
 
 TEST_CASE("side by side there is a sphere on the left and a model on the right") {
   const Model model(1.5);
-  const Image picture = draw_side_by_side(model.surface, model.cut_mesh, model.atlas, 480, 200, pool);
+  const Image picture =
+      draw_side_by_side(model.cut_mesh, shape_of(model.surface, model.cut_mesh), model.atlas, 480, 200, pool);
   CHECK(painted(picture, 0, 200) > 8000);
   CHECK(painted(picture, 240, 480) > 8000);
 }

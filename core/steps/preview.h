@@ -1,0 +1,23 @@
+// A picture of the result.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/asset/asset.h"
+#include "core/steps/delivery.h"
+#include "core/steps/surface.h"
+#include "core/texture/atlas.h"
+#include "core/texture/image.h"
+
+namespace orbis {
+
+// The sphere and the model side by side, with the atlas on both, as PNG. The model stands as the default scene shows
+// it, every mesh at each of its nodes (of a scene of millions of triangles at the first one only), with its own normals
+// and base colour factors; skinned meshes in their bind pose.
+[[nodiscard]] std::vector<std::byte> preview(const asset::Asset& asset, const Surface& surface,
+                                             const texture::CutMesh& cut, const Delivery& delivery,
+                                             std::span<const texture::Image> pages, std::uint32_t threads);
+
+} // namespace orbis
