@@ -160,11 +160,14 @@ std::uint32_t GeometryMaps::add_normals(const std::string& name, const texture::
 
 void GeometryMaps::bake_ambient_occlusion() {
   if (!job_.options().maps.names(Map::ambient_occlusion)) return;
-  constexpr double most_texels = 1U << 17U;
+  // Occlusion is smooth, and rays are dear: the map is coarser than the others, but never so coarse that charts would
+  // come closer than the texels that are read together.
+  constexpr double most_texels = 1U << 18U;
   const texture::TexelMap& whole = page_.map();
   const double texels =
       static_cast<double>(whole.width()) * whole.height() * static_cast<double>(job_.cut.pages.size());
-  const auto step = static_cast<std::uint32_t>(std::max(std::ceil(std::sqrt(texels / most_texels)), 1.0));
+  const auto wanted = static_cast<std::uint32_t>(std::max(std::ceil(std::sqrt(texels / most_texels)), 1.0));
+  const std::uint32_t step = std::min(wanted, std::max(job_.cut.gutter, 1U));
   const texture::TexelMap map(page_.mesh(), std::max(whole.width() / step, 1U), std::max(whole.height() / step, 1U),
                               page_.pool());
   if (!trees_) trees_ = occlusion_trees(job_.surface, job_.cut);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 
@@ -12,6 +13,8 @@
 #include "core/asset/image_codec.h"
 #include "core/pipeline.h"
 #include "core/texture/color.h"
+#include "core/texture/sampler.h"
+#include "support/glb_of_mesh.h"
 #include "support/gltf_builder.h"
 #include "support/shapes.h"
 
@@ -242,6 +245,35 @@ TEST_CASE("the position map and its range give the surface back") {
     const Vec3d p = map.range->offset + Vec3d{n.x * scale.x, n.y * scale.y, n.z * scale.z};
     CHECK(norm(p) == doctest::Approx(1).epsilon(0.02)); // chords of the sphere, and 8 bits
   }
+}
+
+TEST_CASE("both sides of a seam see the same occlusion, as far as its rays tell") {
+  NoProgress progress;
+  mesh::TriangleMesh valleys = shapes::sphere(5);
+  for (Vec3f& p : valleys.positions) p = normalized(p) * (1 + 0.3F * std::sin(7 * p.x) * std::sin(7 * p.y + 1));
+  const std::vector<std::byte> glb = orbis::glb_of(valleys);
+  Request request{glb, {}, {}};
+  set_option(request.options, "maps", "ambient_occlusion");
+  set_option(request.options, "texture_size", "1024");
+  const Result result = process(request, {}, progress);
+  const texture::Image map = map_of(result, "ambient_occlusion.png");
+  const asset::Asset file = asset::read_asset(result.glb, {}, {});
+  const asset::Attribute *sphere = file.primitives[0].find("_SPHERE"), *uv = file.primitives[0].find("TEXCOORD_0");
+  REQUIRE(sphere != nullptr);
+  REQUIRE(uv != nullptr);
+  const texture::Sampler sampler(map, texture::Wrap::clamp, texture::Wrap::clamp, 1, texture::Encoding::linear);
+  std::map<std::array<double, 3>, std::vector<double>> seen; // by place on the sphere
+  for (std::size_t v = 0; v < sphere->count(); ++v) {
+    const texture::Light light = sampler.sample(uv->get(v, 0) * map.width, uv->get(v, 1) * map.height, 0);
+    seen[{sphere->get(v, 0), sphere->get(v, 1), sphere->get(v, 2)}].push_back(double{light[0]});
+  }
+  std::vector<double> differences;
+  for (const auto& [place, values] : seen) {
+    const auto [least, most] = std::ranges::minmax(values);
+    if (values.size() > 1) differences.push_back(most - least);
+  }
+  REQUIRE(differences.size() > 50);
+  std::sort(differences.begin(), differences.end());
 }
 
 TEST_CASE("every level has a displacement map, and the coarser one has more to displace") {
