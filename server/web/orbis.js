@@ -65,14 +65,15 @@ async function request(address, init = {}) {
   throw problem;
 }
 
-function modelOf(list) {
-  const named = list.find((file) => /\.(glb|gltf|drc|obj|ply|stl|zip)$/i.test(file.name));
-  return named ?? list[0];
-}
+const modelsIn = (list) => list.filter((file) => /\.(glb|gltf|drc|obj|ply|stl|zip)$/i.test(file.name));
+
+const modelOf = (list) => modelsIn(list)[0] ?? list[0];
 
 async function start() {
   const body = new FormData();
-  const model = modelOf(files);
+  const model = modelOf(files), models = modelsIn(files).map((file) => file.name);
+  if (models.length > 1 && !chosenOptions().morph_to)
+    throw {title: "One model at a time", detail: `${models.join(" and ")} are models of their own; what goes along are the files that a model names`};
   body.append("model", model, model.name);
   for (const file of files) if (file !== model) body.append("file", file, file.name);
   body.append("options", JSON.stringify(chosenOptions()));
@@ -139,6 +140,7 @@ function show(state) {
   $("state").textContent = words[state.state];
   $("progress").value = state.progress?.percent ?? 0;
   if (state.problem) return showProblem(state.problem);
+  $("detail").textContent = "";
   if (state.queue_position) $("detail").textContent = `Place ${state.queue_position} in the queue`;
   if (state.progress && state.state === "running") {
     const {stage, stage_index, stages, done, total, eta_ms} = state.progress;
@@ -222,6 +224,7 @@ async function showResult(state) {
   $("download").href = await objectUrl(state.links.result);
   $("download").download = modelOf(files).name.replace(/\.[^.]*$/, "") + `-orbis.${state.options.output}`;
   $("report").href = URL.createObjectURL(new Blob([JSON.stringify(report, null, 2)], {type: "application/json"}));
+  $("download").textContent = state.options.output === "zip" ? "Download the zip" : "Download the GLB";
   $("download").hidden = $("report").hidden = false;
   for (const [id, link] of [["preview", "preview.png"], ["atlas", "atlas.png"]]) {
     $(id).src = await objectUrl(state.links[link]);

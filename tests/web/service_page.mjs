@@ -67,6 +67,10 @@ export async function testPage({orbis, browser, models, refused, scratch, out}, 
     expect(shown.failed && shown.detail.length > 20, `the page says '${shown.state}: ${shown.detail}'`)
     expect(shown.pictures.length === 0, 'the pictures of the model before are still there')
   })
+  await test('the page takes one model at a time, and says which there are', async () => {
+    const shown = await send(page, [...crate, refused], path.join(out, 'page-two-models.png'))
+    expect(shown.failed && /crate\.gltf/.test(shown.detail), `the page says '${shown.state}: ${shown.detail}'`)
+  })
   await test('the browser has nothing to complain about', () => expect(complaints.length === 0, complaints.join('; ')))
   await page.close()
   await service.stop()
