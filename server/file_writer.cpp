@@ -15,7 +15,9 @@ namespace {
 [[noreturn]] void fail(std::string_view what, const std::filesystem::path& path) {
   const int reason = errno;
   log_event(Level::error, "file", {{"what", what}, {"path", path.string()}, {"reason", std::strerror(reason)}});
-  throw Error(ErrorCode::internal, reason == ENOSPC ? "the disk is full" : "a file could not be written");
+  throw Error(ErrorCode::internal, reason == ENOSPC
+                                       ? std::string("the disk is full")
+                                       : "the file '" + path.filename().string() + "' could not be written");
 }
 
 // Makes the rename itself durable.

@@ -76,7 +76,8 @@ void describe_job(CLI::App& command, CommandLine& line) {
   command.add_option("--preview", line.run.preview, "the model and its spheres, to look at")->type_name("PREVIEW.png");
   command
       .add_option("--attach", line.run.attachments,
-                  "a file that the model names or an image of a cube map; a directory stands for its files")
+                  "a file that the model names or an image of a cube map; a directory stands for its files; without "
+                  "this, the files that the model names are looked for beside it")
       ->type_name("FILE");
   command.add_option("--dump-stages", line.run.dump_stages, "write each stage as OBJ and PNG")->type_name("DIR");
   command.add_option("--save-maps", line.run.save_maps, "write each map that was baked")->type_name("DIR");

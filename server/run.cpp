@@ -8,6 +8,7 @@
 #include "server/commands.h"
 #include "server/job_files.h"
 #include "server/log.h"
+#include "server/neighbours.h"
 #include "server/signals.h"
 #include "server/worker_process.h"
 
@@ -53,6 +54,9 @@ JobTask task_of(const RunArguments& arguments, const JobLimits& limits) {
   for (const auto& [name, value] : arguments.options) set_option(task.options, name, value);
   task.model = input_file("model", arguments.input);
   for (const fs::path& path : arguments.attachments) attach(path, task.files);
+  if (arguments.attachments.empty()) {
+    for (const auto& [name, path] : named_neighbours(arguments.input)) task.files.push_back(input_file(name, path));
+  }
   if (arguments.second) {
     attach(*arguments.second, task.files);
     task.options.morph_to = task.files.back().name;

@@ -42,6 +42,21 @@ test_run_names_a_file_that_cannot_be_opened() {
   expect "the exit status" "$EXIT" 2
 }
 
+test_run_finds_the_files_that_a_model_names_beside_it() {
+  local model
+  for model in crate.gltf crate.obj; do
+    run_orbis "$models/$model" --texture-size 64
+    expect "the exit status of $model" "$EXIT" 0
+    expect "what the atlas of $model shows" "$(jq --raw-output .atlas.source "$work/run.json")" base_color
+  done
+  # Alone in its directory it lacks them.
+  mkdir -p "$work/alone"
+  cp "$models/crate.gltf" "$work/alone/"
+  run_orbis "$work/alone/crate.gltf"
+  expect "the exit status" "$EXIT" 2
+  expect_match "the detail" "$(jq --raw-output .detail "$work/run.err")" 'crate.bin'
+}
+
 test_run_dumps_its_stages() {
   run_orbis "$models/egg.glb" --texture-size 256 --dump-stages "$work/stages"
   expect "the exit status" "$EXIT" 0
