@@ -127,6 +127,15 @@ private:
 
 } // namespace
 
-bool untangle(PlaneMesh& mesh) { return Untangler(mesh).run(); }
+bool untangle(PlaneMesh& mesh) {
+  const std::vector<FlatPoint> before = mesh.points;
+  if (Untangler(mesh).run()) return true;
+  // What was only thin is better than what became folded.
+  const bool was_sound = std::ranges::all_of(mesh.triangles, [&](const mesh::Triangle& t) {
+    return doubled_area(before[t[0]], before[t[1]], before[t[2]]) > 0;
+  });
+  if (was_sound) mesh.points = before;
+  return was_sound;
+}
 
 } // namespace orbis::texture

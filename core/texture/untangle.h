@@ -5,8 +5,9 @@
 
 namespace orbis::texture {
 
-// Moves the corners of folded triangles to where their whole star is positive, as far as there is such a place: a few
-// rounds over the folds. Returns whether none is left. Only points near folds move; those on a side stay on it.
+// Moves the corners of folded and of very thin triangles to where their whole star is positive, as far as there is such
+// a place: a few rounds over them. Returns whether no fold is left; a mesh without one never gets one. Only points near
+// folds move; those on a side stay on it.
 [[nodiscard]] bool untangle(PlaneMesh& mesh);
 
 } // namespace orbis::texture

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <set>
 
 #include "core/asset/asset.h"
@@ -129,6 +130,31 @@ TEST_CASE("several closed components come back in one file, each certified on a 
   CHECK(result.report.cut_certificate.valid);
   CHECK(area_of(read(result.glb).primitives[0]) == doctest::Approx(area_of(read(glb).primitives[0])).epsilon(1e-6));
   CHECK(run(glb, with("threads", "3")).glb == result.glb);
+}
+
+TEST_CASE("a rolled-up tube seven thousand times as long as thick comes back") {
+  mesh::TriangleMesh tube;
+  constexpr mesh::Index rings = 2000;
+  for (mesh::Index i = 0; i < rings; ++i) {
+    const double turn = 0.05 * i, radius = 1 + 0.002 * i;
+    for (int k = 0; k < 3; ++k) {
+      const double around = 2 * std::numbers::pi * k / 3, r = radius + 0.02 * std::cos(around);
+      tube.positions.emplace_back(Vec3d{r * std::cos(turn), r * std::sin(turn), 0.02 * std::sin(around)});
+    }
+  }
+  for (mesh::Index i = 0; i + 1 < rings; ++i)
+    for (mesh::Index k = 0; k < 3; ++k) {
+      const mesh::Index a = 3 * i + k, b = 3 * i + (k + 1) % 3;
+      tube.triangles.push_back({a, b, b + 3});
+      tube.triangles.push_back({a, b + 3, a + 3});
+    }
+  tube.triangles.push_back({2, 1, 0});
+  tube.triangles.push_back({3 * rings - 3, 3 * rings - 2, 3 * rings - 1});
+  Options options;
+  options.texture_size = 256;
+  const Report report = run(glb_of(tube), options).report;
+  CHECK(report.certificate.valid);
+  CHECK_FALSE(report.partial);
 }
 
 TEST_CASE("a surface without extent is refused") {
