@@ -80,10 +80,30 @@ Sampler::Sampler(const Image& image, Wrap wrap_u, Wrap wrap_v, std::uint32_t lev
     last = &mips_.emplace_back(halved(*last, encoding));
 }
 
-Light Sampler::sample(double x, double y, std::uint32_t level) const {
+Sampler::Level Sampler::level_at(std::uint32_t level) const {
   level = std::min(level, static_cast<std::uint32_t>(mips_.size()));
-  const Image& image = level == 0 ? *image_ : mips_[level - 1];
-  const double scale = level == 0 ? 1.0 : 1.0 / static_cast<double>(std::uint64_t{1} << level);
+  if (level == 0) return {*image_, 1};
+  return {mips_[level - 1], 1 / static_cast<double>(std::uint64_t{1} << level)};
+}
+
+Light Sampler::sample(double x, double y, std::uint32_t level) const { return between_texels(level_at(level), x, y); }
+
+Light Sampler::mean(const Lattice& lattice, std::uint32_t level) const {
+  const Level here = level_at(level);
+  Light sum{};
+  for (std::uint32_t j = 0; j < lattice.count_j; ++j)
+    for (std::uint32_t i = 0; i < lattice.count_i; ++i) {
+      const Light light = between_texels(here, lattice.x + i * lattice.di.x + j * lattice.dj.x,
+                                         lattice.y + i * lattice.di.y + j * lattice.dj.y);
+      for (std::size_t c = 0; c < 4; ++c) sum[c] += light[c];
+    }
+  const float share = 1 / static_cast<float>(lattice.count_i * lattice.count_j);
+  for (float& c : sum) c *= share;
+  return sum;
+}
+
+inline Light Sampler::between_texels(const Level& level, double x, double y) const {
+  const auto& [image, scale] = level;
   const Between across = between(scale * wrapped(x, image_->width, wrap_u_), image.width, wrap_u_);
   const Between down = between(scale * wrapped(y, image_->height, wrap_v_), image.height, wrap_v_);
   const std::array<float, 256>& value = encoding_ == Encoding::srgb ? srgb_tables.linear : srgb_tables.fraction;

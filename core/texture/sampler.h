@@ -8,6 +8,7 @@
 #include "core/texture/bake.h"
 #include "core/texture/color.h"
 #include "core/texture/image.h"
+#include "core/texture/raster.h"
 
 namespace orbis::texture {
 
@@ -43,10 +44,25 @@ public:
 
   // x, y: in texels of the image itself (level 0), from its top left corner; any number, not finite counts as 0.
   [[nodiscard]] Light sample(double x, double y, std::uint32_t level) const;
+  // The mean of reads in a lattice: count_i by count_j of them, from (x, y) on in steps of (di.x, di.y) and (dj.x,
+  // dj.y).
+  struct Lattice {
+    double x = 0, y = 0;
+    RasterPoint di, dj;
+    std::uint32_t count_i = 1, count_j = 1;
+  };
+  [[nodiscard]] Light mean(const Lattice& lattice, std::uint32_t level) const;
   // The texel of the image itself that (x, y) lies in.
   [[nodiscard]] Light nearest(double x, double y) const;
 
 private:
+  struct Level {
+    const Image& image;
+    double scale;
+  };
+  [[nodiscard]] Level level_at(std::uint32_t level) const;
+  [[nodiscard]] Light between_texels(const Level& level, double x, double y) const;
+
   const Image* image_;
   Wrap wrap_u_, wrap_v_;
   Encoding encoding_;

@@ -68,12 +68,28 @@ TextureReader::Footprint TextureReader::footprint(std::uint32_t triangle, const 
   for (; std::max(x, y) > most_taps && f.level < 31; x /= 2, y /= 2) ++f.level;
   f.taps_x = taps_for(x);
   f.taps_y = taps_for(y);
+  std::array<double, 3> step_x{}, step_y{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    step_x[k] = f.along_x[k] / f.taps_x;
+    step_y[k] = f.along_y[k] / f.taps_y;
+    f.reach[k] = 0.5 * ((f.taps_x - 1) * std::abs(step_x[k]) + (f.taps_y - 1) * std::abs(step_y[k]));
+  }
+  f.step_x = at(f.corners, step_x);
+  f.step_y = at(f.corners, step_y);
   return f;
 }
 
 Light TextureReader::read(const Footprint& f, const std::array<double, 3>& centre) {
   if (f.source->image == nullptr) return f.source->color;
   if (f.taps_x == 1 && f.taps_y == 1) return read_once(f, centre);
+  if (centre[0] >= f.reach[0] && centre[1] >= f.reach[1] && centre[2] >= f.reach[2]) {
+    const RasterPoint p = at(f.corners, centre);
+    const double i = 0.5 * (f.taps_x - 1), j = 0.5 * (f.taps_y - 1);
+    return f.sampler->mean({p.x - i * f.step_x.x - j * f.step_y.x, p.y - i * f.step_x.y - j * f.step_y.y, f.step_x,
+                            f.step_y, f.taps_x, f.taps_y},
+                           f.level);
+  }
+  // Some reads would be outside of the triangle, and are moved to its border.
   Light sum{};
   for (std::uint32_t j = 0; j < f.taps_y; ++j) {
     for (std::uint32_t i = 0; i < f.taps_x; ++i) {

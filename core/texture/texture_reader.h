@@ -41,6 +41,9 @@ public:
     std::array<RasterPoint, 3> corners; // in texels of the source
     std::uint32_t level = 0, taps_x = 1, taps_y = 1;
     std::array<double, 3> along_x{}, along_y{};
+    // How far a texel's reads are from its centre, in weights; and the steps between them, in texels of the source.
+    std::array<double, 3> reach{};
+    RasterPoint step_x, step_y;
   };
   [[nodiscard]] Footprint footprint(std::uint32_t triangle, const TriangleInPage& place) const;
 
