@@ -9,7 +9,10 @@ namespace orbis::lod {
 namespace {
 
 constexpr int steps = 12;
-constexpr double hold = 1e-3;        // of a point's own weight: holds what no sample sees where it is
+// Of a point's own weight, and of what it would be if samples lay all over its triangles: holds what no sample sees, or
+// only from afar, where it is.
+constexpr double hold = 1e-3, hold_by_area = 5e-3;
+constexpr double farthest = 0.5; // that a point may go, in units of its longest edge
 constexpr double least_cosine = 0.2; // of the angle by which a triangle may turn
 
 using Vectors = std::vector<Vec3d>; // one per point of the level
@@ -45,11 +48,13 @@ public:
     std::vector<Symmetric3> diagonal(positions_.size());
     for (std::size_t t = 0; t < blocks_.size(); ++t)
       for (std::size_t k = 0; k < 3; ++k) add(diagonal[point(t, k)], blocks_[t][k], 1);
+    std::vector<double> expected = weight_by_area();
     holds_.reserve(diagonal.size());
     std::vector<Symmetric3> inverses;
     inverses.reserve(diagonal.size());
-    for (Symmetric3& d : diagonal) {
-      const double held = hold * (d[0] + d[3] + d[5]) / 3;
+    for (std::size_t p = 0; p < diagonal.size(); ++p) {
+      Symmetric3& d = diagonal[p];
+      const double held = hold * (d[0] + d[3] + d[5]) / 3 + hold_by_area * expected[p];
       holds_.push_back(held);
       for (const std::size_t i : {0, 3, 5}) d[i] += held;
       inverses.push_back(inverse(d).value_or(Symmetric3{}));
@@ -79,8 +84,18 @@ public:
     return x;
   }
 
-  // Points of triangles that turn over go back, until none does.
-  void put_back_turned(Vectors& x) const {
+  // Points that went far go back, then those of triangles that turn over, until none does.
+  void put_back_wrong(Vectors& x) const {
+    std::vector<double> longest(x.size(), 0); // squared edge
+    for (std::size_t t = 0; t < blocks_.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t i = point(t, k), j = point(t, (k + 1) % 3);
+        const double edge = squared_norm(positions_[i] - positions_[j]);
+        longest[i] = std::max(longest[i], edge);
+        longest[j] = std::max(longest[j], edge);
+      }
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (!(squared_norm(x[i] - positions_[i]) <= farthest * farthest * longest[i])) x[i] = positions_[i];
     for (bool any = true; any;) {
       any = false;
       for (std::size_t t = 0; t < blocks_.size(); ++t) {
@@ -95,6 +110,19 @@ public:
   }
 
 private:
+  // By point: the samples' weight times the square of its share in them, if they lay evenly on its triangles.
+  [[nodiscard]] std::vector<double> weight_by_area() const {
+    std::vector<double> out(positions_.size(), 0);
+    double area = 0;
+    for (std::size_t t = 0; t < blocks_.size(); ++t) {
+      const double own = norm(normal(positions_, t));
+      area += own;
+      for (std::size_t k = 0; k < 3; ++k) out[point(t, k)] += own / 6;
+    }
+    for (double& each : out) each *= area > 0 ? weight_ / area : 0;
+    return out;
+  }
+
   [[nodiscard]] std::uint32_t point(std::size_t t, std::size_t k) const {
     return level_.mesh.vertices[level_.mesh.triangles[t][k]].point;
   }
@@ -137,6 +165,7 @@ private:
   void add_sample(const Place& place, const Symmetric3& m, const Vec3d& at, double weight) {
     const auto& w = place.weights;
     auto& block = blocks_[place.triangle];
+    weight_ += weight;
     const Vec3d right = product(m, at) * weight;
     for (std::size_t k = 0; k < 3; ++k) {
       add(block[k], m, weight * w[k] * w[k]);
@@ -163,6 +192,7 @@ private:
   std::vector<std::array<Symmetric3, 6>> blocks_; // of corners 0 0, 1 1, 2 2, 0 1, 1 2, 2 0 of each triangle
   Vectors positions_, right_;
   std::vector<double> holds_;
+  double weight_ = 0; // of all samples
   std::vector<bool> joint_; // by point
 };
 
@@ -171,7 +201,7 @@ private:
 void fit_positions(const FullSurface& full, Level& level) {
   Fit fit(full, level);
   Vectors x = fit.solve();
-  fit.put_back_turned(x);
+  fit.put_back_wrong(x);
   for (std::size_t v = 0; v < level.positions.size(); ++v)
     level.positions[v] = full.in_model(x[level.mesh.vertices[v].point]);
 }

@@ -13,8 +13,8 @@ namespace orbis::lod {
 //   sum over samples i   a_i ( (1 - s_i) (n_i . r_i)^2 + s_i |r_i|^2 ),    r_i = sum_k w_ik p_k - P_i
 //
 // where the level's triangle at the sample's texel has its corners p_k and weights w_ik there. That is a linear system
-// for the positions, solved by conjugate gradients; its matrix is a mass matrix, so that few steps do. Points whose
-// triangles would turn over stay where they were.
+// for the positions, solved by conjugate gradients; its matrix is a mass matrix, so that few steps do. Points that
+// would go far, and those whose triangles would turn over, stay where they were.
 void fit_positions(const FullSurface& full, Level& level);
 
 } // namespace orbis::lod
