@@ -12,7 +12,7 @@ constexpr int steps = 12;
 // Of a point's own weight, and of what it would be if samples lay all over its triangles: holds what no sample sees, or
 // only from afar, where it is.
 constexpr double hold = 1e-3, hold_by_area = 5e-3;
-constexpr double farthest = 0.5; // that a point may go, in units of its longest edge
+constexpr double farthest = 0.5;     // that a point may go, in units of its longest edge
 constexpr double least_cosine = 0.2; // of the angle by which a triangle may turn
 
 using Vectors = std::vector<Vec3d>; // one per point of the level
@@ -192,7 +192,7 @@ private:
   std::vector<std::array<Symmetric3, 6>> blocks_; // of corners 0 0, 1 1, 2 2, 0 1, 1 2, 2 0 of each triangle
   Vectors positions_, right_;
   std::vector<double> holds_;
-  double weight_ = 0; // of all samples
+  double weight_ = 0;       // of all samples
   std::vector<bool> joint_; // by point
 };
 

@@ -16,9 +16,6 @@ using mesh::Index;
 using mesh::Triangle;
 using sphere::GridPoint;
 
-// Below that a flat chart would have to be drawn out so far that cuts are better: a sphere less a fifth of it.
-constexpr double least_openness = 0.2;
-
 GridPoint middle(const GridPoint& a, const GridPoint& b) {
   return sphere::to_grid(normalized(Vec3d(sphere::from_grid(a)) + Vec3d(sphere::from_grid(b))));
 }
@@ -50,8 +47,11 @@ private:
 
 class DiskCutter {
 public:
-  DiskCutter(const AtlasComponent& component, Disk disk)
-      : component_(component), disk_(std::move(disk)), on_outline_(component.sphere.size()) {}
+  // corners: of an outline of four vertices or more.
+  DiskCutter(const AtlasComponent& component, Disk disk, const Corners& corners)
+      : component_(component), disk_(std::move(disk)), corners_(corners), on_outline_(component.sphere.size()) {
+    if (disk_.outline.size() == 3) add_corner();
+  }
 
   std::optional<FlatCharts> run() {
     lay_outline();
@@ -78,6 +78,7 @@ private:
 
   const AtlasComponent& component_;
   Disk disk_;
+  Corners corners_;
   std::vector<OnOutline> on_outline_;                        // point -> where
   std::unordered_map<std::uint64_t, std::uint32_t> middles_; // edge, lower vertex in the upper half -> point
   std::vector<GridPoint> added_;                             // the points in the middle of edges
@@ -122,14 +123,8 @@ private:
   }
 
   void lay_outline() {
-    std::array<std::size_t, 4> corners{0, 1, 2, 3};
-    if (disk_.outline.size() == 3) {
-      add_corner();
-    } else {
-      corners = corners_of(disk_, component_);
-    }
     for (std::size_t i = 0; i < disk_.outline.size(); ++i) on_outline_[disk_.outline[i]].number = i;
-    for (std::size_t side = 0; side < 4; ++side) lay_side(side, corners[side], corners[(side + 1) % 4]);
+    for (std::size_t side = 0; side < 4; ++side) lay_side(side, corners_[side], corners_[(side + 1) % 4]);
   }
 
   // Counter-clockwise as it is seen, from the lower left corner of the square; y down.
@@ -232,10 +227,8 @@ private:
 
 } // namespace
 
-std::optional<FlatCharts> cut_to_disk(const AtlasComponent& component) {
-  std::optional<Disk> disk = as_disk(component);
-  if (!disk || disk->openness < least_openness) return std::nullopt;
-  return DiskCutter(component, std::move(*disk)).run();
+std::optional<FlatCharts> cut_to_disk(const AtlasComponent& component, const Disk& disk, const Corners& corners) {
+  return DiskCutter(component, disk, corners).run();
 }
 
 } // namespace orbis::texture

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/texture/flat_charts.h"
+#include "core/texture/outline.h"
 
 namespace orbis::texture {
 
@@ -13,8 +14,9 @@ namespace orbis::texture {
 // their own in their middle, since they could not be laid out else; so has an outline of three edges, as its fourth
 // corner.
 //
-// Nothing where the component is closed, or no disk, or too deep a cup for a flat chart (Disk::openness), or where a
-// point in the middle of an edge would fold a triangle on the sphere. Deterministic; O(triangles).
-[[nodiscard]] std::optional<FlatCharts> cut_to_disk(const AtlasComponent& component);
+// corners: of the rectangle, on the outline; 0 1 2 3 where it has three vertices. Nothing where a point in the middle
+// of an edge would fold a triangle on the sphere. Deterministic; O(triangles).
+[[nodiscard]] std::optional<FlatCharts> cut_to_disk(const AtlasComponent& component, const Disk& disk,
+                                                    const Corners& corners);
 
 } // namespace orbis::texture

@@ -7,9 +7,9 @@
 namespace orbis::texture {
 namespace {
 
-constexpr double least_weight = 0.02, largest_weight = 50; // of an edge
-constexpr int rows_to_factor = 20'000;                     // more are solved in steps
-constexpr double accuracy = 1e-7;                          // of the residual, in units of the right side
+constexpr double least_weight = 1e-5, largest_weight = 1e5; // of an edge
+constexpr int rows_to_factor = 20'000;                      // more are solved in steps
+constexpr double accuracy = 1e-7;                           // of the residual, in units of the right side
 constexpr int most_steps = 300;
 constexpr double points_a_cell = 32; // of the coarse grid, about
 constexpr int widest_grid = 128;

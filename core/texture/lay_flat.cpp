@@ -119,28 +119,50 @@ Laid lay(FlatCharts charts, FlatStart start, const AtlasComponent& component, me
   return {std::move(charts), cost};
 }
 
-std::optional<Laid> lay_as_disk(const AtlasComponent& component, mesh::ThreadPool& pool) {
-  std::optional<FlatCharts> charts = cut_to_disk(component);
-  if (!charts) return std::nullopt;
-  try {
-    return lay(std::move(*charts), FlatStart::outlines, component, pool);
-  } catch (const Error& e) {
-    if (e.code() != ErrorCode::not_certified) throw;
-    return std::nullopt; // cuts give it more room
-  }
+// Below that a flat chart would have to be drawn out so far that cuts are better: a sphere less a fifth of it.
+constexpr double least_openness = 0.2;
+// Of one chart, to look no further; small components are many, and worse off in pieces.
+constexpr double good_cost = 1.3, good_cost_if_small = 1.7;
+constexpr std::size_t small = 200; // triangles
+constexpr double best_cost = 1.02; // of one chart, to try no other corners
+// What lies between several rectangles on a page costs about a tenth; and cuts are worth a fifth.
+constexpr double cost_of_packing = 1.1, worth_a_cut = 1.2;
+constexpr std::size_t never_cut = 2; // triangles
+
+// How many sets of corners are tried: layouts of large components take long, and differ less.
+std::size_t attempts_for(std::size_t triangles) {
+  return triangles <= small ? 3 : triangles <= 3'000 ? 5 : triangles <= 30'000 ? 3 : 2;
 }
 
-constexpr double good_cost = 1.3;       // of one chart, to look no further
-constexpr double worth_a_cut = 1 / 1.2; // six charts must cost less than this part of one
+std::optional<Laid> lay_as_disk(const AtlasComponent& component, mesh::ThreadPool& pool) {
+  const std::optional<Disk> disk = as_disk(component);
+  if (!disk || disk->openness < least_openness) return std::nullopt;
+  std::vector<Corners> sets{{0, 1, 2, 3}};
+  if (disk->outline.size() > 3) sets = corners_of(*disk, component, attempts_for(component.delivered));
+  std::optional<Laid> best;
+  for (const Corners& corners : sets) {
+    if (best && best->cost <= best_cost) break;
+    try {
+      std::optional<FlatCharts> charts = cut_to_disk(component, *disk, corners);
+      if (!charts) continue;
+      Laid laid = lay(std::move(*charts), FlatStart::outlines, component, pool);
+      if (!best || laid.cost < best->cost) best = std::move(laid);
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::not_certified) throw; // else other corners, or cuts, give it more room
+    }
+  }
+  return best;
+}
 
 } // namespace
 
 FlatCharts lay_flat(const AtlasComponent& component, ChartKinds kinds, Progress& progress, mesh::ThreadPool& pool) {
   std::optional<Laid> disk;
   if (kinds == ChartKinds::all) disk = lay_as_disk(component, pool);
-  if (disk && disk->cost <= good_cost) return std::move(disk->charts);
+  const double good = component.delivered <= small ? good_cost_if_small : good_cost;
+  if (disk && (disk->cost <= good || component.delivered <= never_cut)) return std::move(disk->charts);
   Laid faces = lay(cut(component, progress), FlatStart::places, component, pool);
-  return std::move(disk && faces.cost > worth_a_cut * disk->cost ? disk->charts : faces.charts);
+  return std::move(disk && worth_a_cut * cost_of_packing * faces.cost > disk->cost ? disk->charts : faces.charts);
 }
 
 } // namespace orbis::texture

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "core/mesh/disjoint_sets.h"
 #include "core/mesh/edges.h"
@@ -70,6 +71,8 @@ double angle_at(const Triangle& t, std::size_t k, std::span<const Vec3f> positio
   return std::atan2(norm(cross(a, b)), dot(a, b));
 }
 
+constexpr double right_angle = std::numbers::pi / 2;
+
 // Along an outline, once around from its first vertex.
 class Course {
 public:
@@ -92,15 +95,25 @@ public:
   [[nodiscard]] double between(std::size_t i, std::size_t j) const {
     return j > i ? at_[j] - at_[i] : length() + at_[j] - at_[i];
   }
-  // By how much the outline turns to the left within `reach` of a vertex; radians.
-  [[nodiscard]] double turn(std::size_t i, double reach) const {
-    return turned_until(at_[i] + reach, true) - turned_until(at_[i] - reach, false);
+  // How much of a corner a vertex is: the left turn at it and around it, in windows from nothing to a twelfth of the
+  // outline, each up to a right angle. The narrow windows tell the corner from its neighbours, the wide ones find it
+  // where it is rounded off.
+  [[nodiscard]] double sharpness(std::size_t i) const {
+    constexpr std::array<double, 3> reaches{1.0 / 24, 1.0 / 100, 1.0 / 400}; // of the outline
+    double sum = std::min(own_turn(i), right_angle);
+    for (const double reach : reaches) sum += std::min(turn(i, reach * length()), right_angle);
+    return sum / (1 + reaches.size());
   }
   [[nodiscard]] double own_turn(std::size_t i) const { return turn_[i + 1] - turn_[i]; }
 
 private:
   std::size_t size_;
   std::vector<double> at_, turn_; // sums before each vertex
+
+  // By how much the outline turns to the left within `reach` of a vertex; radians.
+  [[nodiscard]] double turn(std::size_t i, double reach) const {
+    return turned_until(at_[i] + reach, true) - turned_until(at_[i] - reach, false);
+  }
 
   // The turns of all vertices before a place, which may lie before the beginning or behind the end.
   [[nodiscard]] double turned_until(double place, bool with_the_vertex_there) const {
@@ -116,30 +129,36 @@ private:
 };
 
 constexpr std::size_t most_sharp = 12, evenly_spaced = 12; // vertices that come into question
+constexpr double surely_sharp = 1;                         // radians
 
-// The sharpest ones, none in another's reach, and some all around.
-std::vector<std::size_t> candidates(const Course& course, std::span<const double> turns, double reach) {
-  std::vector<std::size_t> by_turn(course.size());
-  std::iota(by_turn.begin(), by_turn.end(), std::size_t{0});
-  std::stable_sort(by_turn.begin(), by_turn.end(), [&](std::size_t i, std::size_t j) {
-    return turns[i] + course.own_turn(i) > turns[j] + course.own_turn(j);
-  });
+// The first vertex at or behind a place on the outline.
+std::size_t vertex_at(const Course& course, double place) {
+  place = std::fmod(place, course.length());
+  std::size_t i = 0;
+  while (i + 1 < course.size() && course.at(i) < place) ++i;
+  return i;
+}
+
+// The sharpest ones, and some all around. Of those close together one will do, but for true corners: a long strip has
+// two at each end.
+std::vector<std::size_t> candidates(const Course& course, std::span<const double> sharpness) {
+  std::vector<std::size_t> by_sharpness(course.size());
+  std::iota(by_sharpness.begin(), by_sharpness.end(), std::size_t{0});
+  std::stable_sort(by_sharpness.begin(), by_sharpness.end(),
+                   [&](std::size_t i, std::size_t j) { return sharpness[i] > sharpness[j]; });
+  const double reach = course.length() / 24;
   std::vector<std::size_t> out;
-  for (const std::size_t i : by_turn) {
+  for (const std::size_t i : by_sharpness) {
     if (out.size() == most_sharp) break;
-    const bool is_apart = std::ranges::none_of(
-        out, [&](std::size_t j) { return std::min(course.between(i, j), course.between(j, i)) <= reach; });
-    if (is_apart) out.push_back(i);
+    const bool stands_alone = std::ranges::none_of(out, [&](std::size_t j) {
+      return std::min(course.between(i, j), course.between(j, i)) <= reach &&
+             !(course.own_turn(i) > surely_sharp && course.own_turn(j) > surely_sharp);
+    });
+    if (stands_alone) out.push_back(i);
   }
-  for (std::size_t k = 0; k < evenly_spaced; ++k) {
-    std::size_t i = k * course.size() / evenly_spaced;
-    const double place = course.length() * static_cast<double>(k) / evenly_spaced;
-    if (course.length() > 0) {
-      i = 0;
-      while (i + 1 < course.size() && course.at(i + 1) <= place) ++i;
-    }
-    out.push_back(i);
-  }
+  const double start = course.at(by_sharpness.front()); // not where the outline happens to begin
+  for (std::size_t k = 0; k < evenly_spaced && course.length() > 0; ++k)
+    out.push_back(vertex_at(course, start + course.length() * static_cast<double>(k) / evenly_spaced));
   for (std::size_t i = 0; i < std::min<std::size_t>(course.size(), 4); ++i) out.push_back(i); // four at least
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
@@ -149,19 +168,28 @@ std::vector<std::size_t> candidates(const Course& course, std::span<const double
 double squared_log(double ratio) { return std::log(ratio) * std::log(ratio); }
 
 // Four right angles and equal opposite sides have 2 pi, the most; a square a little more than a long rectangle.
-double fitness(const Course& course, std::span<const double> turns, const std::array<std::size_t, 4>& corners) {
-  constexpr double weight_of_shape = 0.05, most_for_shape = 0.5;
+double fitness(const Course& course, std::span<const double> sharpness, const Corners& corners) {
+  constexpr double weight_of_shape = 0.02, most_for_shape = 0.2;
   const double least = 1e-6 * course.length();
   std::array<double, 4> sides{};
   double sum = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     sides[k] = std::max(course.between(corners[k], corners[(k + 1) % 4]), least);
-    sum += std::min(turns[corners[k]], std::numbers::pi / 2);
+    sum += sharpness[corners[k]];
   }
   if (!(least > 0)) return sum;
   const double shape = squared_log((sides[0] + sides[2]) / (sides[1] + sides[3]));
   return sum - squared_log(sides[0] / sides[2]) - squared_log(sides[1] / sides[3]) -
          std::min(weight_of_shape * shape, most_for_shape);
+}
+
+// Whether some corner of one set has none of the other's near it.
+bool differ(const Course& course, const Corners& a, const Corners& b) {
+  const double near = course.length() / 48;
+  return std::ranges::any_of(a, [&](std::size_t i) {
+    return std::ranges::all_of(
+        b, [&](std::size_t j) { return i != j && std::min(course.between(i, j), course.between(j, i)) > near; });
+  });
 }
 
 } // namespace
@@ -191,26 +219,28 @@ std::optional<Disk> as_disk(const AtlasComponent& component) {
   return out;
 }
 
-std::array<std::size_t, 4> corners_of(const Disk& disk, const AtlasComponent& component) {
+std::vector<Corners> corners_of(const Disk& disk, const AtlasComponent& component, std::size_t most) {
   const Course course(disk, component);
-  const double reach = course.length() / 24;
-  std::vector<double> turns;
-  turns.reserve(course.size());
-  for (std::size_t i = 0; i < course.size(); ++i) turns.push_back(course.turn(i, reach));
-  const std::vector<std::size_t> all = candidates(course, turns, reach);
-  std::array<std::size_t, 4> best{all[0], all[1], all[2], all[3]};
-  double most = fitness(course, turns, best);
+  std::vector<double> sharpness;
+  sharpness.reserve(course.size());
+  for (std::size_t i = 0; i < course.size(); ++i) sharpness.push_back(course.sharpness(i));
+  const std::vector<std::size_t> all = candidates(course, sharpness);
+  std::vector<std::pair<double, Corners>> sets;
   for (std::size_t a = 0; a < all.size(); ++a)
     for (std::size_t b = a + 1; b < all.size(); ++b)
       for (std::size_t c = b + 1; c < all.size(); ++c)
         for (std::size_t d = c + 1; d < all.size(); ++d) {
-          const std::array<std::size_t, 4> corners{all[a], all[b], all[c], all[d]};
-          const double here = fitness(course, turns, corners);
-          if (!(here > most)) continue;
-          most = here;
-          best = corners;
+          const Corners corners{all[a], all[b], all[c], all[d]};
+          sets.emplace_back(fitness(course, sharpness, corners), corners);
         }
-  return best;
+  std::stable_sort(sets.begin(), sets.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Corners> out;
+  for (const auto& [value, corners] : sets) {
+    if (out.size() == most) break;
+    const bool is_new = std::ranges::all_of(out, [&](const Corners& other) { return differ(course, corners, other); });
+    if (is_new) out.push_back(corners);
+  }
+  return out;
 }
 
 } // namespace orbis::texture

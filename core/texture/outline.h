@@ -24,8 +24,12 @@ struct Disk {
 // Nothing where the component is closed, or is no disk even so.
 [[nodiscard]] std::optional<Disk> as_disk(const AtlasComponent& component);
 
-// Where the corners of a rectangle best lie on an outline of four vertices or more: at its own corners, where the
-// surface turns, and so that opposite sides have about one length. Indices into the outline, ascending.
-[[nodiscard]] std::array<std::size_t, 4> corners_of(const Disk& disk, const AtlasComponent& component);
+// Four places of an outline, ascending: indices into Disk::outline.
+using Corners = std::array<std::size_t, 4>;
+
+// Where the corners of a rectangle may well lie on an outline of four vertices or more, best guess first: where the
+// outline turns, and so that opposite sides have about one length. At most `most` sets, at least one; they differ by a
+// forty-eighth of the outline or more.
+[[nodiscard]] std::vector<Corners> corners_of(const Disk& disk, const AtlasComponent& component, std::size_t most);
 
 } // namespace orbis::texture

@@ -4,9 +4,11 @@
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "core/asset/asset.h"
 #include "core/pipeline.h"
+#include "support/defects.h"
 #include "support/glb_of_mesh.h"
 
 using namespace orbis;
@@ -253,6 +255,19 @@ TEST_CASE("with output=zip every level is a file of its own, named in the manife
       CHECK(asset::material_texture(level, level.primitives[0], slot).has_value());
   }
   CHECK(process(request, {}, progress).glb == result.glb);
+}
+
+TEST_CASE("on a ragged sheet no vertex of a level flies away") {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> chance(0, 1);
+    mesh::TriangleMesh sheet = shapes::terrain(40, 40, 2);
+    std::erase_if(sheet.triangles, [&](const mesh::Triangle&) { return chance(random) < 0.12; });
+    const Report report = run(glb_of(sheet), "0.3").report;
+    REQUIRE(report.levels.size() == 1);
+    CHECK(report.levels[0].hausdorff_distance < 9);
+    CHECK(report.levels[0].texture_deviation_max < 9);
+  }
 }
 
 TEST_CASE("a bound that the level before has left behind is not reached, and said so") {
