@@ -235,10 +235,11 @@ std::vector<Corners> corners_of(const Disk& disk, const AtlasComponent& componen
         }
   std::stable_sort(sets.begin(), sets.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<Corners> out;
-  for (const auto& [value, corners] : sets) {
+  for (const auto& candidate : sets) {
     if (out.size() == most) break;
-    const bool is_new = std::ranges::all_of(out, [&](const Corners& other) { return differ(course, corners, other); });
-    if (is_new) out.push_back(corners);
+    const Corners& corners = candidate.second;
+    if (std::ranges::all_of(out, [&](const Corners& other) { return differ(course, corners, other); }))
+      out.push_back(corners);
   }
   return out;
 }
