@@ -123,15 +123,16 @@ Laid lay(FlatCharts charts, FlatStart start, const AtlasComponent& component, me
 constexpr double least_openness = 0.2;
 // Of one chart, to look no further; small components are many, and worse off in pieces.
 constexpr double good_cost = 1.3, good_cost_if_small = 1.7;
-constexpr std::size_t small = 200; // triangles
-constexpr double best_cost = 1.02; // of one chart, to try no other corners
+constexpr std::size_t small = 200;    // triangles
+constexpr double best_cost = 1.02;    // of one chart, to try no other corners
+constexpr std::size_t large = 30'000; // triangles: other corners are not worth their time where the first are good
 // What lies between several rectangles on a page costs about a tenth; and cuts are worth a fifth.
 constexpr double cost_of_packing = 1.1, worth_a_cut = 1.2;
 constexpr std::size_t never_cut = 2; // triangles
 
 // How many sets of corners are tried: layouts of large components take long, and differ less.
 std::size_t attempts_for(std::size_t triangles) {
-  return triangles <= small ? 3 : triangles <= 3'000 ? 5 : triangles <= 30'000 ? 3 : 2;
+  return triangles <= small ? 3 : triangles <= 3'000 ? 5 : triangles <= large ? 3 : 2;
 }
 
 std::optional<Laid> lay_as_disk(const AtlasComponent& component, mesh::ThreadPool& pool) {
@@ -139,9 +140,10 @@ std::optional<Laid> lay_as_disk(const AtlasComponent& component, mesh::ThreadPoo
   if (!disk || disk->openness < least_openness) return std::nullopt;
   std::vector<Corners> sets{{0, 1, 2, 3}};
   if (disk->outline.size() > 3) sets = corners_of(*disk, component, attempts_for(component.delivered));
+  const double enough = component.delivered <= large ? best_cost : good_cost;
   std::optional<Laid> best;
   for (const Corners& corners : sets) {
-    if (best && best->cost <= best_cost) break;
+    if (best && best->cost <= enough) break;
     try {
       std::optional<FlatCharts> charts = cut_to_disk(component, *disk, corners);
       if (!charts) continue;
