@@ -250,7 +250,11 @@ private:
       fill(*std::move(refusal), response);
       return true;
     }
-    if (request.get_header_value_u64("Content-Length") <= settings_.max_bytes) return false;
+    return refuse_large(request.get_header_value_u64("Content-Length"), response);
+  }
+
+  bool refuse_large(std::uint64_t bytes, httplib::Response& response) const {
+    if (bytes <= settings_.max_bytes) return false;
     fill(
         api::make_problem(Error(ErrorCode::too_large, "the body is larger than " + std::to_string(settings_.max_bytes) +
                                                           " bytes, the limit max_bytes of this service")),
@@ -275,6 +279,10 @@ private:
       if (response.status < 400) response.status = 400; // explain() says more
       return;
     }
+    // A body in chunks does not say beforehand how long it is.
+    std::uint64_t bytes = 0;
+    for (const api::Part& part : upload.parts) bytes += part.bytes;
+    if (refuse_large(bytes, response)) return;
     api::Request plain = plain_request(request);
     plain.parts = upload.parts;
     fill(handle(plain), response);

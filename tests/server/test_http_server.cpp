@@ -147,6 +147,12 @@ TEST_CASE_FIXTURE(Site, "a body that is too large is 413, announced or not") {
   CHECK(announced.status == 413);
   CHECK(json::parse(announced.body)["type"] == "/problems/too-large");
   CHECK(json::parse(announced.body)["detail"].get<std::string>().find("1000") != std::string::npos);
+  // In chunks: 1001 bytes are 3E9 in hexadecimal.
+  const auto socket = connect();
+  send(socket, "POST /v1/jobs HTTP/1.1\r\nHost: test\r\nConnection: close\r\n" + glb +
+                   "Transfer-Encoding: chunked\r\n\r\n3E9\r\n" + std::string(1001, 'x') + "\r\n0\r\n\r\n");
+  CHECK(receive(socket).status == 413);
+  CHECK(std::filesystem::is_empty(directory.path / "spool"));
 }
 
 TEST_CASE_FIXTURE(Site, "what is no HTTP, no multipart or no body is a problem document") {
