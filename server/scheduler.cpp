@@ -285,6 +285,7 @@ std::optional<api::StoredFile> Scheduler::output(std::string_view id, std::strin
   const Lock lock(mutex_);
   const auto stored = store_.find(id);
   if (!stored || stored->job.state != JobState::succeeded) return std::nullopt;
+  if (stored->job.expires && *stored->job.expires <= api::now()) return std::nullopt; // not collected yet
   const auto output = std::ranges::find(stored->outputs, name, [](const auto& o) { return std::string_view(o.first); });
   if (output == stored->outputs.end()) return std::nullopt;
   return api::StoredFile{blobs_.output_path(id, name), output->second.bytes, output->second.sha256};

@@ -280,6 +280,14 @@ TEST_CASE("files are deleted when their time is over, and the job says so") {
   CHECK_FALSE(service.scheduler->find(job.id).has_value());
 }
 
+TEST_CASE("what has expired is not served, whether it was collected or not") {
+  Service service;
+  service.settings.time_to_live = std::chrono::seconds(0);
+  service.restart();
+  const api::Job job = service.finished(service.submit().id);
+  CHECK_FALSE(service.scheduler->file(job.id, api::JobFile::result).has_value());
+}
+
 TEST_CASE("files that no job owns are removed at the start") {
   Service service;
   service.down();
