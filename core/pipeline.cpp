@@ -11,6 +11,7 @@
 #include "core/steps/levels.h"
 #include "core/steps/likeness.h"
 #include "core/steps/measure.h"
+#include "core/steps/mirrored_tangents.h"
 #include "core/steps/morph.h"
 #include "core/steps/preview.h"
 #include "core/steps/remesh.h"
@@ -80,6 +81,7 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   measure_likeness(asset, sphere.cut, delivery, levels, maps, clock, report);
 
   clock.report(Stage::encode, 0, 1);
+  mirror_tangents(asset, delivery, levels, report);
   if (end) name_morph_target(*end, delivery);
   if (request.options.sphere_morph) {
     add_sphere_morph(asset, surface, delivery);

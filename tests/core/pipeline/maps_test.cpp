@@ -211,6 +211,36 @@ TEST_CASE("a flat normal map stays flat on the atlas, in frames that the vertice
   }
 }
 
+TEST_CASE("under a node that mirrors, the bitangent points the other way") {
+  const std::vector<std::pair<std::string, std::string>> settings{{"maps", "normal"}, {"lods", "0.2"}};
+  const GltfBuilder plain = painted_sphere();
+  GltfBuilder mirrored = painted_sphere(), both = painted_sphere();
+  mirrored.json["nodes"][0]["scale"] = {-1, 1, 1};
+  both.json["scenes"][0]["nodes"].push_back(both.append("nodes", Json{{"mesh", 0}, {"scale", {1, 1, -2}}}));
+  const Result at_plain = run(plain, settings), at_mirrored = run(mirrored, settings), at_both = run(both, settings);
+  CHECK(map_of(at_plain, "normal.png").pixels == map_of(at_mirrored, "normal.png").pixels);
+  const asset::Asset a = asset::read_asset(at_plain.glb, {}, {}), b = asset::read_asset(at_mirrored.glb, {}, {}),
+                     c = asset::read_asset(at_both.glb, {}, {});
+  REQUIRE(a.primitives.size() == 2); // the full surface and a level
+  REQUIRE(b.primitives.size() == 2);
+  for (std::size_t p = 0; p < 2; ++p) {
+    const asset::Attribute *straight = a.primitives[p].find("TANGENT"), *turned = b.primitives[p].find("TANGENT"),
+                           *mixed = c.primitives[p].find("TANGENT");
+    REQUIRE(straight != nullptr);
+    REQUIRE(turned != nullptr);
+    REQUIRE(turned->count() == straight->count());
+    for (std::size_t v = 0; v < straight->count(); ++v) {
+      CHECK(turned->get(v, 3) == -straight->get(v, 3));
+      CHECK(mixed->get(v, 3) == straight->get(v, 3));
+    }
+  }
+  const auto noted = [](const Result& r) {
+    return std::ranges::count(r.report.notes, "mirrored-instances", &Note::code);
+  };
+  CHECK(noted(at_mirrored) == 0);
+  CHECK(noted(at_both) == 1);
+}
+
 TEST_CASE("without normals a surface is flat, and its normal map says so on smooth vertices") {
   GltfBuilder b = painted_sphere();
   b.json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
