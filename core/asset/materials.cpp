@@ -180,6 +180,12 @@ std::array<float, 3> base_color_factor(const Asset& asset, const Primitive& prim
   return out;
 }
 
+bool is_double_sided(const Asset& asset, const Primitive& primitive) {
+  if (!primitive.material) return false;
+  const Json* flag = find(asset.document->json["materials"][*primitive.material], "doubleSided");
+  return flag && flag->is_boolean() && flag->get<bool>();
+}
+
 void assign_atlas(Json& document, const std::vector<AtlasUser>& users) {
   AtlasMaterials materials(document, users);
   for (const AtlasUser& user : users) materials.assign(user);

@@ -20,6 +20,9 @@ namespace orbis::asset {
 // The base colour factor of a primitive's material, linear RGB; 1 without one.
 [[nodiscard]] std::array<float, 3> base_color_factor(const Asset& asset, const Primitive& primitive);
 
+// Whether its back faces are drawn.
+[[nodiscard]] bool is_double_sided(const Asset& asset, const Primitive& primitive);
+
 // What becomes of a material on the atlas.
 struct AtlasLook {
   std::uint32_t texcoord = 0;                  // TEXCOORD_texcoord samples the new textures

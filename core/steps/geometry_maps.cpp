@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/asset/materials.h"
 #include "core/steps/tangent_frames.h"
 #include "core/texture/bake_displacement.h"
 #include "core/texture/bake_occlusion.h"
@@ -158,6 +159,15 @@ std::uint32_t GeometryMaps::add_normals(const std::string& name, const texture::
              : page_.add(bake.operator()<Image>(), MapKind::directions, name, shown);
 }
 
+std::vector<bool> GeometryMaps::two_sided_triangles() const {
+  std::vector<bool> primitives, out;
+  primitives.reserve(job_.asset.primitives.size());
+  for (const asset::Primitive& p : job_.asset.primitives) primitives.push_back(asset::is_double_sided(job_.asset, p));
+  out.reserve(page_.primitive_of().size());
+  for (const std::uint32_t p : page_.primitive_of()) out.push_back(primitives[p]);
+  return out;
+}
+
 void GeometryMaps::bake_ambient_occlusion() {
   if (!job_.options().maps.names(Map::ambient_occlusion)) return;
   // Occlusion is smooth, and rays are dear: the map is coarser than the others, but never so coarse that charts would
@@ -171,9 +181,9 @@ void GeometryMaps::bake_ambient_occlusion() {
   const texture::TexelMap map(page_.mesh(), std::max(whole.width() / step, 1U), std::max(whole.height() / step, 1U),
                               page_.pool());
   if (!trees_) trees_ = occlusion_trees(job_.surface, job_.cut);
-  const Image image =
-      texture::bake_occlusion(map, page_.values().positions(), page_.values().normals(),
-                              {trees_->trees, trees_->tree_of}, trees_->offset, job_.progress, page_.pool());
+  const Image image = texture::bake_occlusion(map, page_.values().positions(), page_.values().normals(),
+                                              {trees_->trees, trees_->tree_of}, two_sided_triangles(), trees_->offset,
+                                              job_.progress, page_.pool());
   const std::uint32_t number = page_.add(image, MapKind::data, "ambient_occlusion");
   for (std::size_t p = 0; p < job_.asset.primitives.size(); ++p) {
     if (!page_.shows(p) || asset::names_texture(job_.asset, job_.asset.primitives[p], TextureSlot::occlusion)) continue;

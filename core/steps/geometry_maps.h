@@ -28,6 +28,7 @@ public:
   void bake_displacements();
 
 private:
+  [[nodiscard]] std::vector<bool> two_sided_triangles() const; // by triangle of the cut
   void bake_displacement_of(const DetailLevel& level, const std::string& name);
   [[nodiscard]] std::vector<bool> takes_normal_map(const SlotTextures& textures) const;
   [[nodiscard]] std::vector<bool> levels_take_normal_map(const std::vector<bool>& full) const;

@@ -41,9 +41,10 @@ std::vector<std::array<float, 2>> hammersley() {
 class OcclusionShader {
 public:
   OcclusionShader(std::span<const std::array<Vec3f, 3>> positions, std::span<const std::array<Vec3f, 3>> normals,
-                  const Occluders& occluders, float offset, std::uint32_t width, std::vector<float>& seen)
-      : positions_(positions), normals_(normals), occluders_(occluders), offset_(offset), width_(width), seen_(seen),
-        samples_(hammersley()) {}
+                  const Occluders& occluders, const std::vector<bool>& two_sided, float offset, std::uint32_t width,
+                  std::vector<float>& seen)
+      : positions_(positions), normals_(normals), occluders_(occluders), two_sided_(two_sided), offset_(offset),
+        width_(width), seen_(seen), samples_(hammersley()) {}
 
   void triangle(std::uint32_t t, const TriangleInPage&) {
     triangle_ = t;
@@ -55,8 +56,16 @@ public:
 
   void texel(std::uint32_t x, std::uint32_t y, const std::array<double, 3>& weights) {
     const std::size_t texel = std::size_t{y} * width_ + x;
-    const Vec3f normal = unit(blend(normals_[triangle_], weights));
-    const Vec3f origin = blend(positions_[triangle_], weights) + flat_ * offset_;
+    const Vec3f normal = unit(blend(normals_[triangle_], weights)), at = blend(positions_[triangle_], weights);
+    seen_[texel] = sky_above(at, normal, flat_, texel);
+    if (!two_sided_.empty() && two_sided_[triangle_])
+      seen_[texel] = std::max(seen_[texel], sky_above(at, -normal, -flat_, texel));
+  }
+
+private:
+  // flat: the triangle's own normal on this side.
+  [[nodiscard]] float sky_above(const Vec3f& at, const Vec3f& normal, const Vec3f& flat, std::size_t texel) const {
+    const Vec3f origin = at + flat * offset_;
     const Vec3f u = unit(std::abs(normal.x) < 0.6F ? cross(normal, {1, 0, 0}) : cross(normal, {0, 1, 0}));
     const Vec3f v = cross(normal, u);
     const RayTree& tree = occluders_.trees[occluders_.tree_of[triangle_]];
@@ -66,14 +75,13 @@ public:
       const float angle = 2 * std::numbers::pi_v<float> * fraction(s + turn), square = fraction(t + shift);
       const float r = std::sqrt(square), up = std::sqrt(1 - square);
       const Vec3f direction = u * (r * std::cos(angle)) + v * (r * std::sin(angle)) + normal * up;
-      if (dot(direction, flat_) <= 0) continue;
+      if (dot(direction, flat) <= 0) continue;
       ++cast;
       if (tree.meets(origin, direction)) ++hidden;
     }
-    seen_[texel] = cast > 0 ? 1 - static_cast<float>(hidden) / static_cast<float>(cast) : 1;
+    return cast > 0 ? 1 - static_cast<float>(hidden) / static_cast<float>(cast) : 1;
   }
 
-private:
   static Vec3f blend(const std::array<Vec3f, 3>& corners, const std::array<double, 3>& w) {
     return corners[0] * static_cast<float>(w[0]) + corners[1] * static_cast<float>(w[1]) +
            corners[2] * static_cast<float>(w[2]);
@@ -85,6 +93,7 @@ private:
 
   std::span<const std::array<Vec3f, 3>> positions_, normals_;
   const Occluders& occluders_;
+  const std::vector<bool>& two_sided_;
   float offset_;
   std::uint32_t width_;
   std::vector<float>& seen_;
@@ -112,12 +121,14 @@ float smoothed(const TexelMap& map, const std::vector<float>& seen, std::uint32_
 } // namespace
 
 Image bake_occlusion(const TexelMap& map, std::span<const std::array<Vec3f, 3>> positions,
-                     std::span<const std::array<Vec3f, 3>> normals, const Occluders& occluders, float offset,
-                     const Progress& progress, mesh::ThreadPool& pool) {
+                     std::span<const std::array<Vec3f, 3>> normals, const Occluders& occluders,
+                     const std::vector<bool>& two_sided, float offset, const Progress& progress,
+                     mesh::ThreadPool& pool) {
   std::vector<float> seen(std::size_t{map.width()} * map.height(), 1);
   constexpr std::size_t texels_a_look = std::size_t{1} << 15U;
   shade(
-      map, pool, progress, [&] { return OcclusionShader(positions, normals, occluders, offset, map.width(), seen); },
+      map, pool, progress,
+      [&] { return OcclusionShader(positions, normals, occluders, two_sided, offset, map.width(), seen); },
       texels_a_look);
   Image image{map.width(), map.height(), 3, {}};
   image.pixels.reserve(3 * seen.size());

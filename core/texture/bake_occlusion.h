@@ -26,12 +26,15 @@ struct Occluders {
 // The visible part of the sky above each texel's point, weighted by the cosine to its normal (what glTF's occlusion
 // texture multiplies ambient light with), in all three channels: rays_a_texel rays a texel over the hemisphere of the
 // normal, a Hammersley set that is turned from texel to texel, then smoothed over 3 x 3 texels of the same chart. Rays
-// that start into the surface's own triangle do not count.
+// that start into the surface's own triangle do not count. Of a surface that is seen from both sides, the side that
+// sees more: one texel serves both, and a dark one would darken the side in the open.
 //   positions, normals  at the corners of the page mesh's triangles; normals are unit
+//   two_sided           by triangle: whether it is seen from both sides; empty: none is
 //   offset              how far above the surface rays start, in its units
 // Throws Error{canceled}.
 [[nodiscard]] Image bake_occlusion(const TexelMap& map, std::span<const std::array<Vec3f, 3>> positions,
                                    std::span<const std::array<Vec3f, 3>> normals, const Occluders& occluders,
-                                   float offset, const Progress& progress, mesh::ThreadPool& pool);
+                                   const std::vector<bool>& two_sided, float offset, const Progress& progress,
+                                   mesh::ThreadPool& pool);
 
 } // namespace orbis::texture

@@ -138,6 +138,7 @@ function finish({error, psnrs, picture: url}) {
     process.exitCode = 1;
     return;
   }
-  console.log(psnrs.map(([all, inside]) => `${all.toFixed(2)} (inside ${inside.toFixed(2)})`).join('  '), 'dB');
+  const shown = (psnr) => psnr === null ? 'no difference' : psnr.toFixed(2); // JSON has no infinity
+  console.log(psnrs.map(([all, inside]) => `${shown(all)} (inside ${shown(inside)})`).join('  '), 'dB');
   if (picture) writeFileSync(picture, Buffer.from(url.split(',')[1], 'base64'));
 }

@@ -339,9 +339,26 @@ TEST_CASE("a plain sees the whole sky, and half of it at the foot of a high wall
   const std::vector<RayTree> trees{RayTree(ground, triangle), RayTree(wall, triangle)};
   for (const std::uint32_t which : {0U, 1U}) {
     const std::vector<std::uint32_t> tree_of(sheet.triangles.size(), which);
-    const Image image = bake_occlusion(map, positions, normals, {trees, tree_of}, 1e-4F, NoProgress(), pool);
+    const Image image = bake_occlusion(map, positions, normals, {trees, tree_of}, {}, 1e-4F, NoProgress(), pool);
     for (std::uint32_t y = 0; y < 32; ++y)
       for (std::uint32_t x = 0; x < 32; ++x)
         CHECK(std::abs(image.at(x, y)[0] - (which == 0 ? 255 : 128)) <= (which == 0 ? 0 : 20));
+  }
+}
+
+TEST_CASE("a sheet that is seen from both sides has the occlusion of its open side") {
+  const Sheet sheet(1);
+  const auto positions = sheet.corners<Vec3f>([&](std::uint32_t v) { return Vec3f{sheet.uv[v].x, sheet.uv[v].y, 0}; });
+  const auto normals = sheet.corners<Vec3f>([](std::uint32_t) { return Vec3f{0, 0, -1}; });
+  ThreadPool pool(2);
+  const TexelMap map(sheet.page(), 16, 16, pool);
+  // A wide floor close to its front.
+  const std::vector<Vec3f> floor{{-1e4F, -1e4F, -0.01F}, {2e4F, -1e4F, -0.01F}, {0, 2e4F, -0.01F}};
+  const std::vector<RayTree> trees{RayTree(floor, std::vector<Triangle>{{0, 1, 2}})};
+  const std::vector<std::uint32_t> tree_of(sheet.triangles.size(), 0);
+  for (const bool two_sided : {false, true}) {
+    const Image image = bake_occlusion(map, positions, normals, {trees, tree_of},
+                                       std::vector<bool>(sheet.triangles.size(), two_sided), 1e-4F, NoProgress(), pool);
+    CHECK(image.at(8, 8)[0] == (two_sided ? 255 : 0));
   }
 }
