@@ -129,7 +129,7 @@ const timer = setTimeout(() => finish({error: 'no answer within five minutes'}),
 
 function finish({error, psnrs, picture: url}) {
   clearTimeout(timer);
-  browser.once('exit', () => rmSync(profile, {recursive: true, force: true}));
+  browser.once('exit', () => rmSync(profile, {recursive: true, force: true, maxRetries: 5}));
   browser.kill();
   server.close();
   server.closeAllConnections();
