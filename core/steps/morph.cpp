@@ -201,7 +201,12 @@ void measure(const MorphEnd& end, const mesh::TriangleMesh& shape, Report& repor
 std::optional<MorphEnd> read_morph_end(const Request& request, const Limits& limits, const Surface& first,
                                        Progress& progress, Report& report) {
   const std::string& file = request.options.morph_to;
-  if (file.empty()) return std::nullopt;
+  if (file.empty()) {
+    if (!request.options.features.empty())
+      throw Error(ErrorCode::invalid_option,
+                  "features are points of two models, and there is no second one: see morph_to", "features");
+    return std::nullopt;
+  }
   if (request.options.sphere_morph)
     throw Error(ErrorCode::invalid_option, "a morph to a second model cannot have the target of sphere_morph beside it",
                 "sphere_morph");

@@ -131,6 +131,20 @@ TEST_CASE("models that are not one sphere each are refused by name and defect, a
   CHECK_THROWS_AS((void)run(good, good, {{"sphere_morph", "true"}}), Error);
 }
 
+TEST_CASE("features without a second model are refused") {
+  NoProgress progress;
+  const std::vector<std::byte> glb = glb_of(shapes::sphere(2));
+  Request request{glb, {}, {}};
+  set_option(request.options, "features", "[[[0,0,1],[0,0,2]]]");
+  try {
+    (void)process(request, {}, progress);
+    FAIL("accepted");
+  } catch (const Error& e) {
+    CHECK(e.code() == ErrorCode::invalid_option);
+    CHECK(e.where() == "features");
+  }
+}
+
 TEST_CASE("feature pairs are read and written; anything else is refused") {
   Options options;
   set_option(options, "features", " [ [[1,2,3], [-4.5,0,1e2]],[[0,0,0],[0,0,1]] ] ");
