@@ -57,14 +57,15 @@ constexpr std::array<OptionInfo, 22> table{{
     {"threads", "0 to 256", "0", "threads of the embedding, 0 for as many as the machine has; the result is the same"},
 }};
 
+[[noreturn]] void refuse(std::string_view name, std::string_view value, const std::string& why) {
+  throw Error(ErrorCode::invalid_option,
+              "option '" + std::string(name) + "' cannot be '" + std::string(value.substr(0, 64)) + "': " + why,
+              std::string(name));
+}
+
 [[noreturn]] void refuse(std::string_view name, std::string_view value) {
   for (const OptionInfo& info : table) {
-    if (info.name == name) {
-      throw Error(ErrorCode::invalid_option,
-                  "option '" + std::string(name) + "' cannot be '" + std::string(value.substr(0, 64)) + "': it takes " +
-                      std::string(info.values),
-                  std::string(name));
-    }
+    if (info.name == name) refuse(name, value, "it takes " + std::string(info.values));
   }
   std::string known;
   for (const OptionInfo& info : table) known += (known.empty() ? "" : ", ") + std::string(info.name);
@@ -97,11 +98,6 @@ constexpr std::array<std::string_view, 2> topologies{"repair", "strict"};
 constexpr std::array<std::string_view, 4> compressions{"none", "draco", "meshopt", "quantized"};
 constexpr std::array<std::string_view, 2> outputs{"glb", "zip"};
 
-[[noreturn]] void refuse_lods(std::string_view list, const std::string& why) {
-  throw Error(ErrorCode::invalid_option, "option 'lods' cannot be '" + std::string(list.substr(0, 64)) + "': " + why,
-              "lods");
-}
-
 // "0.25", "5000" or "deviation:0.1".
 LodTarget lod_target(std::string_view list, std::string_view text) {
   const std::string item = std::string("'").append(text.substr(0, 64)).append("' ");
@@ -111,14 +107,14 @@ LodTarget lod_target(std::string_view list, std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !(value > 0))
-    refuse_lods(list, item + "is neither a number above 0 nor 'deviation:' with one");
+    refuse("lods", list, item + "is neither a number above 0 nor 'deviation:' with one");
   if (is_deviation) {
-    if (value > 100) refuse_lods(list, item + "is more than 100 per cent of the bounding box's diagonal");
+    if (value > 100) refuse("lods", list, item + "is more than 100 per cent of the bounding box's diagonal");
     return {LodTarget::Kind::deviation, value};
   }
   if (value <= 1) return {LodTarget::Kind::ratio, value};
   if (value < 4 || value > 4e9 || value != std::floor(value))
-    refuse_lods(list, item + "is neither a part up to 1 nor a whole number of triangles, four at least");
+    refuse("lods", list, item + "is neither a part up to 1 nor a whole number of triangles, four at least");
   return {LodTarget::Kind::triangles, value};
 }
 
@@ -133,12 +129,12 @@ std::vector<LodTarget> lod_targets(std::string_view list) {
       const LodTarget& last = targets.back();
       const bool grows = last.value > before.value;
       if (last.kind == before.kind && grows != (last.kind == LodTarget::Kind::deviation))
-        refuse_lods(list, "levels go from fine to coarse: parts and numbers down, deviations up");
+        refuse("lods", list, "levels go from fine to coarse: parts and numbers down, deviations up");
     }
   }
   if (targets.size() > most_lods)
-    refuse_lods(list,
-                "it has " + std::to_string(targets.size()) + " levels; " + std::to_string(most_lods) + " are the most");
+    refuse("lods", list,
+           "it has " + std::to_string(targets.size()) + " levels; " + std::to_string(most_lods) + " are the most");
   return targets;
 }
 

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <string_view>
 
+#include "api/http.h"
+
 namespace orbis::server {
 namespace fs = std::filesystem;
 
@@ -15,11 +17,7 @@ constexpr std::size_t most_text = std::size_t{16} << 20U;
 constexpr std::size_t most_entries = 2'000;
 constexpr int deepest = 3;
 
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
+std::string lower_extension(const fs::path& path) { return api::lower_case(path.extension().string()); }
 
 bool may_name_files(const fs::path& model) {
   constexpr std::array<std::string_view, 4> extensions{".gltf", ".glb", ".obj", ".ply"};

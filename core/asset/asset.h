@@ -138,6 +138,7 @@ struct NewPrimitive {
 
   // The attribute of this name, or null.
   [[nodiscard]] const Attribute* find(std::string_view name) const;
+  [[nodiscard]] Attribute* find(std::string_view name);
 };
 
 // A coarser version of the new primitives.

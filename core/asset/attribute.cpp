@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "core/asset/asset.h"
 
@@ -98,6 +99,9 @@ void Attribute::set(std::size_t v, std::uint32_t c, double value) {
 
 const Attribute* Primitive::find(std::string_view name) const { return find_in(attributes, name); }
 const Attribute* NewPrimitive::find(std::string_view name) const { return find_in(attributes, name); }
+Attribute* NewPrimitive::find(std::string_view name) {
+  return const_cast<Attribute*>(std::as_const(*this).find(name)); // NOLINT: it is one of our own
+}
 
 std::size_t Primitive::vertex_count() const { return attributes.empty() ? 0 : attributes.front().count(); }
 

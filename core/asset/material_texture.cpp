@@ -108,7 +108,8 @@ std::optional<MaterialTexture> material_texture(const Asset& asset, const Primit
 }
 
 bool names_texture(const Asset& asset, const Primitive& primitive, TextureSlot slot) {
-  return primitive.material && texture_info(asset.document->json["materials"][*primitive.material], slot) != nullptr;
+  const Json* material = material_of(asset, primitive);
+  return material && texture_info(*material, slot) != nullptr;
 }
 
 bool shares_tangents(const Asset& asset, const Primitive& primitive) {

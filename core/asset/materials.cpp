@@ -168,12 +168,16 @@ const Json* texture_info(const Json& material, TextureSlot slot) {
   return info && info->is_object() ? info : nullptr;
 }
 
+const Json* material_of(const Asset& asset, const Primitive& primitive) {
+  return primitive.material ? &asset.document->json["materials"][*primitive.material] : nullptr;
+}
+
 std::array<float, 3> base_color_factor(const Asset& asset, const Primitive& primitive) {
   std::array<float, 3> out{1, 1, 1};
-  if (!primitive.material) return out;
-  const Json& material = asset.document->json["materials"][*primitive.material];
-  const Json* factor = find_path(material, "extensions", specular_glossiness, "diffuseFactor");
-  if (!factor) factor = find_path(material, "pbrMetallicRoughness", "baseColorFactor");
+  const Json* material = material_of(asset, primitive);
+  if (!material) return out;
+  const Json* factor = find_path(*material, "extensions", specular_glossiness, "diffuseFactor");
+  if (!factor) factor = find_path(*material, "pbrMetallicRoughness", "baseColorFactor");
   if (!factor || !factor->is_array() || factor->size() < out.size()) return out;
   for (std::size_t k = 0; k < out.size(); ++k)
     if ((*factor)[k].is_number()) out[k] = std::clamp((*factor)[k].get<float>(), 0.0F, 1.0F);
@@ -181,8 +185,8 @@ std::array<float, 3> base_color_factor(const Asset& asset, const Primitive& prim
 }
 
 bool is_double_sided(const Asset& asset, const Primitive& primitive) {
-  if (!primitive.material) return false;
-  const Json* flag = find(asset.document->json["materials"][*primitive.material], "doubleSided");
+  const Json* material = material_of(asset, primitive);
+  const Json* flag = material ? find(*material, "doubleSided") : nullptr;
   return flag && flag->is_boolean() && flag->get<bool>();
 }
 

@@ -17,6 +17,9 @@ namespace orbis::asset {
 // Null where there is none.
 [[nodiscard]] const Json* texture_info(const Json& material, TextureSlot slot);
 
+// The primitive's material, or null where it has none.
+[[nodiscard]] const Json* material_of(const Asset& asset, const Primitive& primitive);
+
 // The base colour factor of a primitive's material, linear RGB; 1 without one.
 [[nodiscard]] std::array<float, 3> base_color_factor(const Asset& asset, const Primitive& primitive);
 

@@ -19,10 +19,8 @@ bool shows_normal_map(const asset::NewPrimitive& primitive) {
 }
 
 void negate_w(asset::NewPrimitive& primitive) {
-  for (asset::Attribute& a : primitive.attributes) {
-    if (a.name != "TANGENT") continue;
-    for (std::size_t v = 0; v < a.count(); ++v) a.set(v, 3, -a.get(v, 3));
-  }
+  asset::Attribute* const tangent = primitive.find("TANGENT");
+  for (std::size_t v = 0; tangent != nullptr && v < tangent->count(); ++v) tangent->set(v, 3, -tangent->get(v, 3));
 }
 
 } // namespace

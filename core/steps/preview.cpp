@@ -28,7 +28,7 @@ Vec3d own_normal(const asset::Asset& asset, const Surface& surface, const textur
   for (std::size_t k = 0; k < 3; ++k) {
     if (v.barycentric[k] == 0) continue;
     const std::uint32_t i = surface.corners[v.triangle][k] - surface.first_vertex[primitive];
-    sum += Vec3d{normal->get(i, 0), normal->get(i, 1), normal->get(i, 2)} * v.barycentric[k];
+    sum += asset::vector_at(*normal, i) * v.barycentric[k];
   }
   return sum;
 }

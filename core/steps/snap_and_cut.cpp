@@ -184,19 +184,19 @@ public:
 private:
   void note_density(Report& report) const {
     constexpr double much = 1.25;
-    if (const double density = std::sqrt(report.atlas.quality.texels_per_area);
-        size_.texel_density > 0 && density > much * size_.texel_density) {
-      report.notes.push_back({"texel-density-raised",
+    const double asked = size_.texel_density;
+    if (asked <= 0) return;
+    const auto note = [&](const char* code, double density, const std::string& why) {
+      report.notes.push_back({code,
                               "the atlas has " + std::to_string(density) + " texels per unit of length, not " +
-                                  std::to_string(size_.texel_density) + ": no chart can be smaller",
+                                  std::to_string(asked) + ": " + why,
                               "texel_density"});
-    }
-    if (placed_.texel_density >= size_.texel_density) return;
-    report.notes.push_back({"texel-density-lowered",
-                            "the atlas has " + std::to_string(placed_.texel_density) +
-                                " texels per unit of length, not " + std::to_string(size_.texel_density) +
-                                ": a page of " + std::to_string(texture::widest_page) + " texels holds no more",
-                            "texel_density"});
+    };
+    if (const double density = std::sqrt(report.atlas.quality.texels_per_area); density > much * asked)
+      note("texel-density-raised", density, "no chart can be smaller");
+    if (placed_.texel_density < asked)
+      note("texel-density-lowered", placed_.texel_density,
+           "a page of " + std::to_string(texture::widest_page) + " texels holds no more");
   }
 
   // One note a mesh, which may have thousands of components.

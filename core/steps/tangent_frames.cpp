@@ -10,11 +10,6 @@ namespace {
 
 using asset::Attribute;
 
-Attribute* find(asset::NewPrimitive& p, std::string_view name) {
-  const auto found = std::ranges::find_if(p.attributes, [&](const Attribute& a) { return a.name == name; });
-  return found == p.attributes.end() ? nullptr : &*found;
-}
-
 Attribute& float_attribute(asset::NewPrimitive& p, std::string_view name, std::uint32_t components) {
   std::erase_if(p.attributes, [&](const Attribute& a) { return a.name == name; });
   Attribute out{std::string(name), asset::ComponentType::f32, false, components, {}};
@@ -54,7 +49,7 @@ void add_smooth_normals(const Surface& surface, const texture::CutMesh& cut, con
     const OutputVertex o = delivery.of_cut_vertex[v];
     if (!lacking[o.primitive]) continue;
     const Vec3d normal = texture::interpolated(normals, surface.mesh.triangles, cut.vertices[v]);
-    set_vector(*find(delivery.primitives[o.primitive], "NORMAL"), o.vertex, unit(normal));
+    set_vector(*delivery.primitives[o.primitive].find("NORMAL"), o.vertex, unit(normal));
   }
 }
 
@@ -92,7 +87,7 @@ TangentFrames add_tangent_frames(const asset::Asset& asset, const Surface& surfa
                                  const std::vector<bool>& wanted, Delivery& delivery, Report& report) {
   std::vector<bool> lacking(wanted.size());
   for (std::size_t p = 0; p < wanted.size(); ++p) {
-    lacking[p] = wanted[p] && find(delivery.primitives[p], "NORMAL") == nullptr;
+    lacking[p] = wanted[p] && delivery.primitives[p].find("NORMAL") == nullptr;
   }
   add_smooth_normals(surface, cut, lacking, delivery);
 
@@ -104,8 +99,8 @@ TangentFrames add_tangent_frames(const asset::Asset& asset, const Surface& surfa
   for (std::size_t v = 0; v < cut.vertices.size(); ++v) {
     const OutputVertex o = delivery.of_cut_vertex[v];
     if (!wanted[o.primitive]) continue;
-    out.normals[v] = get_vector(*find(delivery.primitives[o.primitive], "NORMAL"), o.vertex);
-    positions[v] = get_vector(*find(delivery.primitives[o.primitive], "POSITION"), o.vertex);
+    out.normals[v] = get_vector(*delivery.primitives[o.primitive].find("NORMAL"), o.vertex);
+    positions[v] = get_vector(*delivery.primitives[o.primitive].find("POSITION"), o.vertex);
     uv[v] = cut.vertices[v].uv;
   }
   std::vector<mesh::Triangle> triangles;
@@ -139,8 +134,8 @@ TangentFrames add_tangent_frames(const asset::Asset& asset, const Surface& surfa
 }
 
 void set_frame(asset::NewPrimitive& primitive, std::size_t vertex, const texture::VertexFrame& frame) {
-  set_vector(*find(primitive, "NORMAL"), vertex, frame.normal);
-  Attribute& tangent = *find(primitive, "TANGENT");
+  set_vector(*primitive.find("NORMAL"), vertex, frame.normal);
+  Attribute& tangent = *primitive.find("TANGENT");
   set_vector(tangent, vertex, {frame.tangent.x, frame.tangent.y, frame.tangent.z});
   tangent.set(vertex, 3, double{frame.tangent.w});
 }
