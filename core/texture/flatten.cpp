@@ -10,6 +10,7 @@
 #include "core/texture/density.h"
 #include "core/texture/harmonic.h"
 #include "core/texture/plane_energy.h"
+#include "core/texture/plane_newton.h"
 #include "core/texture/untangle.h"
 
 namespace orbis::texture {
@@ -20,10 +21,13 @@ constexpr double worthwhile = 0.01; // of the energy, to go on for
 constexpr int first_sweeps = 3, sweeps_a_cycle = 6, last_sweeps = 4;
 // Where this part of the surface gets less than this part of the median texels, areas are weighed more and more.
 constexpr double sparse_part = 0.01, sparse_density = 0.27;
-constexpr std::array<int, 3> heavier_exponents{8, 12, 16};
+constexpr std::array<int, 4> heavier_exponents{4, 8, 12, 16}; // the first one to the end, which sweeps may not reach
 constexpr int heavier_sweeps_a_cycle = 12;
-constexpr double weight_of_hole = 1e-3; // of a triangle that only closes one
-constexpr double least_area = 1e-6;     // of a triangle, in units of the mean
+constexpr double least_area_evened = 1e-3;      // of a triangle, in units of its chart's mean
+constexpr std::size_t most_for_newton = 20'000; // triangles
+constexpr double worthwhile_evenness = 1.03;    // times the sparsest density, to go on for
+constexpr double weight_of_hole = 1e-3;         // of a triangle that only closes one
+constexpr double least_area = 1e-6;             // of a triangle, in units of the mean
 constexpr std::uint32_t most_cells = 32;
 constexpr double triangles_a_cell = 8;
 
@@ -31,6 +35,7 @@ constexpr double triangles_a_cell = 8;
 struct ChartMesh {
   PlaneMesh mesh;
   std::vector<std::uint32_t> places; // point -> place
+  std::vector<double> areas;         // of the triangles on the surface; 0 of those that only close holes
 };
 
 std::vector<ChartMesh> split(const FlatCharts& charts, std::span<const Vec3d> positions, std::size_t delivered) {
@@ -53,6 +58,8 @@ std::vector<ChartMesh> split(const FlatCharts& charts, std::span<const Vec3d> po
     PlaneReference r = plane_reference(positions[a], positions[b], positions[c]);
     r.closes_hole = charts.mesh.parent[t] >= delivered;
     if (r.closes_hole) r.area *= weight_of_hole;
+    chart.areas.push_back(r.closes_hole ? 0
+                                        : 0.5 * norm(cross(positions[b] - positions[a], positions[c] - positions[a])));
     total += r.area;
     chart.mesh.references.push_back(r);
   }
@@ -128,34 +135,72 @@ bool flatten_chart(PlaneMesh& mesh, FlatStart start) {
   return true;
 }
 
-// The charts that hold what gets too few texels; none where that is no more than sparse_part of the surface.
-std::vector<std::size_t> sparse_charts(std::span<const ChartMesh> charts) {
-  const auto density_of = [](const PlaneMesh& mesh, std::size_t t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    const double area = mesh.references[t].area;
-    return Density{doubled_area(mesh.points[a], mesh.points[b], mesh.points[c]) / (2 * area), area};
-  };
+// How the texels are spread over all charts.
+struct Spread {
+  double sparsest;                 // the density that sparse_part of the surface does not reach, over the median
+  std::vector<std::size_t> sparse; // the charts that hold what gets too few
+};
+
+Density density_of(const ChartMesh& chart, std::size_t t) {
+  const auto& [a, b, c] = chart.mesh.triangles[t];
+  const double area = chart.areas[t];
+  return {doubled_area(chart.mesh.points[a], chart.mesh.points[b], chart.mesh.points[c]) / (2 * area), area};
+}
+
+Spread spread_over(std::span<const ChartMesh> charts) {
   std::vector<Density> densities;
   double total = 0;
   for (const ChartMesh& chart : charts)
-    for (std::size_t t = 0; t < chart.mesh.triangles.size(); ++t) {
-      if (chart.mesh.references[t].closes_hole) continue;
-      densities.push_back(density_of(chart.mesh, t));
+    for (std::size_t t = 0; t < chart.areas.size(); ++t) {
+      if (!(chart.areas[t] > 0)) continue;
+      densities.push_back(density_of(chart, t));
       total += densities.back().area;
     }
   sort_by_density(densities);
-  const double least = sparse_density * percentile(densities, total, 0.5);
-  if (percentile(densities, total, sparse_part) >= least) return {};
-  std::vector<std::size_t> out;
+  const double median = percentile(densities, total, 0.5);
+  Spread out{densities.empty() ? 1 : percentile(densities, total, sparse_part) / median, {}};
   for (std::size_t c = 0; c < charts.size(); ++c) {
     double sparse = 0;
-    for (std::size_t t = 0; t < charts[c].mesh.triangles.size(); ++t) {
-      const Density d = density_of(charts[c].mesh, t);
-      if (!charts[c].mesh.references[t].closes_hole && d.texels_per_area < least) sparse += d.area;
-    }
-    if (sparse > sparse_part * total / static_cast<double>(charts.size())) out.push_back(c);
+    for (std::size_t t = 0; t < charts[c].areas.size(); ++t)
+      if (charts[c].areas[t] > 0 && density_of(charts[c], t).texels_per_area < sparse_density * median)
+        sparse += charts[c].areas[t];
+    if (sparse > sparse_part * total / static_cast<double>(charts.size())) out.sparse.push_back(c);
   }
   return out;
+}
+
+// To this part of their mean: triangles that are next to nothing would be crushed between the others.
+void raise_areas(PlaneMesh& mesh, double part) {
+  double total = 0;
+  for (const PlaneReference& r : mesh.references) total += r.area;
+  const double least = part * total / static_cast<double>(mesh.references.size());
+  for (PlaneReference& r : mesh.references)
+    if (!r.closes_hole) r.area = std::max(r.area, least);
+}
+
+// Weighs areas more and more in the charts that get too few texels, until they get enough or it helps no more.
+void even_out(std::vector<ChartMesh>& charts, mesh::ThreadPool& pool) {
+  Spread spread = spread_over(charts);
+  for (const int exponent : heavier_exponents) {
+    if (spread.sparsest >= sparse_density) return;
+    std::vector<PlaneMesh> before;
+    before.reserve(spread.sparse.size());
+    for (const std::size_t c : spread.sparse) before.push_back(charts[c].mesh);
+    pool.for_blocks(spread.sparse.size(), 1, [&](std::size_t i, std::size_t) {
+      PlaneMesh& mesh = charts[spread.sparse[i]].mesh;
+      mesh.exponent = exponent;
+      raise_areas(mesh, least_area_evened);
+      if (mesh.triangles.size() <= most_for_newton)
+        lower_by_newton(mesh);
+      else
+        lower(mesh, heavier_sweeps_a_cycle);
+    });
+    Spread now = spread_over(charts);
+    if (now.sparsest < spread.sparsest)
+      for (std::size_t i = 0; i < before.size(); ++i) charts[spread.sparse[i]].mesh = std::move(before[i]);
+    if (exponent > heavier_exponents.front() && now.sparsest < worthwhile_evenness * spread.sparsest) return;
+    spread = std::move(now);
+  }
 }
 
 } // namespace
@@ -168,14 +213,7 @@ void flatten(FlatCharts& charts, std::span<const Vec3d> positions, std::size_t d
                   [&](std::size_t c, std::size_t) { is_flat[c] = flatten_chart(meshes[c].mesh, start) ? 1 : 0; });
   if (std::ranges::find(is_flat, 0) != is_flat.end())
     throw Error(ErrorCode::not_certified, "a triangle at a border of the cube's faces has no room in its chart");
-  for (const int exponent : heavier_exponents) {
-    const std::vector<std::size_t> sparse = sparse_charts(meshes);
-    pool.for_blocks(sparse.size(), 1, [&](std::size_t i, std::size_t) {
-      PlaneMesh& mesh = meshes[sparse[i]].mesh;
-      mesh.exponent = exponent;
-      lower(mesh, heavier_sweeps_a_cycle);
-    });
-  }
+  even_out(meshes, pool);
   charts.sizes.clear();
   for (const ChartMesh& chart : meshes) {
     const FlatCharts::Size size = size_of(chart.mesh);
