@@ -22,6 +22,7 @@ constexpr int first_sweeps = 3, sweeps_a_cycle = 6, last_sweeps = 4;
 // Where this part of the surface gets less than this part of the median texels, areas are weighed more and more.
 constexpr double sparse_part = 0.01, sparse_density = 0.27;
 constexpr std::array<int, 4> heavier_exponents{4, 8, 12, 16}; // the first one to the end, which sweeps may not reach
+constexpr std::size_t most_to_finish = 3'000; // triangles: what sweeps leave of larger charts' energy is not worth it
 constexpr int heavier_sweeps_a_cycle = 12;
 constexpr double least_area_evened = 1e-3;      // of a triangle, in units of its chart's mean
 constexpr std::size_t most_for_newton = 20'000; // triangles
@@ -132,6 +133,7 @@ bool flatten_chart(PlaneMesh& mesh, FlatStart start) {
   if (!untangle(mesh)) return false;
   settle_in_rectangle(mesh, first_sweeps);
   lower(mesh, sweeps_a_cycle);
+  if (mesh.triangles.size() <= most_to_finish) lower_by_newton(mesh);
   return true;
 }
 

@@ -1,11 +1,12 @@
 #include "core/texture/plane_newton.h"
 
-#include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
+#include "core/sphere/triangle_hessian.h"
 #include "core/texture/area_factor.h"
 
 namespace orbis::texture {
@@ -17,6 +18,7 @@ constexpr std::size_t small = 10'000; // triangles
 constexpr int rounds = 20, rounds_if_small = 200;
 constexpr double regularisation = 1e-9; // of the Hessian's mean diagonal
 constexpr double sufficient = 1e-4;     // of what the gradient promises (Armijo)
+constexpr double least_singular = 1e-9; // of the larger one
 constexpr double part_to_fold = 0.9;
 constexpr int most_halvings = 20;
 constexpr int fixed = -1;
@@ -25,34 +27,63 @@ using Vector = Eigen::VectorXd;
 using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 using Corner = std::array<int, 2>; // the variables of a point's x and y
 
-// Of one triangle, by the coordinates of its edges a - p and b - p: (ux, uy, vx, vy).
-struct Local {
-  Eigen::Vector4d gradient;
-  Eigen::Matrix4d hessian;
+// The area factor as the sphere's energies have theirs (sphere/triangle_energy.h).
+struct PlaneFamily {
+  int exponent;
+  [[nodiscard]] sphere::Jet jet(double V, double area) const {
+    const double scale = 0.5 / area;
+    const AreaFactor f(scale * V, exponent);
+    return {f.h, scale * f.h1, scale * scale * f.h2};
+  }
 };
 
-Local local_expansion(const PlaneReference& r, int exponent, const FlatPoint& p, const FlatPoint& a,
-                      const FlatPoint& b) {
-  const Eigen::Vector4d e{a.x - p.x, a.y - p.y, b.x - p.x, b.y - p.y};
-  // D = 1/2 (cot_b |u|^2 + cot_a |v|^2 + cot_p |u - v|^2)
-  const double uu = r.cot[2] + r.cot[0], vv = r.cot[1] + r.cot[0], uv = -r.cot[0];
-  Eigen::Matrix4d L;
-  L << uu, 0, uv, 0, 0, uu, 0, uv, uv, 0, vv, 0, 0, uv, 0, vv;
-  const Eigen::Vector4d Dz = L * e;
-  const double D = 0.5 * e.dot(Dz), scale = 0.5 / r.area;
-  // x = (uy vx - ux vy) / (2 A)
-  const Eigen::Vector4d xz = scale * Eigen::Vector4d{-e[3], e[2], e[1], -e[0]};
-  Eigen::Matrix4d xzz = Eigen::Matrix4d::Zero();
-  xzz(0, 3) = xzz(3, 0) = -scale;
-  xzz(1, 2) = xzz(2, 1) = scale;
-  const AreaFactor f(scale * (e[1] * e[2] - e[0] * e[3]), exponent);
+// E of one triangle by its six coordinates: the gradient, and the rows w of the Hessian w^T w.
+struct Local {
+  std::array<double, 6> gradient{};
+  std::array<std::array<double, 6>, 4> rows{};
+};
+
+// The modes of the second derivative by the map (sphere/energy_modes.h), contracted with the corners' hat functions.
+// All in coordinates with y up, in which triangles are counter-clockwise.
+Local expand(const PlaneReference& r, int exponent, const std::array<FlatPoint, 3>& corners) {
+  std::array<FlatPoint, 3> p = corners;
+  for (FlatPoint& corner : p) corner.y = -corner.y;
+  const PlaneFamily family{exponent};
+  double D = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const FlatPoint &a = p[(i + 1) % 3], &b = p[(i + 2) % 3];
+    D += 0.5 * r.cot[i] * ((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y));
+  }
+  const sphere::HatGradients hat = sphere::hat_gradients(r.cot, r.area);
+  std::array<double, 4> F{}; // row-major
+  for (std::size_t i = 1; i < 3; ++i) {
+    const double x = p[i].x - p[0].x, y = p[i].y - p[0].y;
+    F[0] += x * hat.x[i];
+    F[1] += x * hat.y[i];
+    F[2] += y * hat.x[i];
+    F[3] += y * hat.y[i];
+  }
+  const sphere::Jet h = family.jet(doubled_area(corners[0], corners[1], corners[2]), r.area);
+  const sphere::Svd svd = sphere::decompose(F[0], F[1], F[2], F[3]);
+  const sphere::Modes modes = sphere::modes_of(family, svd.s1, std::max(svd.s2, least_singular * svd.s1));
+  std::array<double, 4> scale{};
+  for (std::size_t k = 0; k < 4; ++k) scale[k] = std::sqrt(modes.lambda[k] * r.area);
+  const double half = std::sqrt(0.5);
   Local out;
-  out.gradient = f.h * Dz + D * f.h1 * xz;
-  out.hessian =
-      f.h * L + f.h1 * (Dz * xz.transpose() + xz * Dz.transpose()) + D * f.h2 * xz * xz.transpose() + D * f.h1 * xzz;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> modes(out.hessian);
-  out.hessian =
-      modes.eigenvectors() * modes.eigenvalues().cwiseMax(0.0).asDiagonal() * modes.eigenvectors().transpose();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    const double Dx = r.cot[k] * (p[i].x - p[j].x) + r.cot[j] * (p[i].x - p[k].x);
+    const double Dy = r.cot[k] * (p[i].y - p[j].y) + r.cot[j] * (p[i].y - p[k].y);
+    out.gradient[2 * i] = h.value * Dx + D * h.first * (p[j].y - p[k].y);
+    out.gradient[2 * i + 1] = -(h.value * Dy + D * h.first * (p[k].x - p[j].x));
+    const double g1 = hat.x[i] * svd.cv + hat.y[i] * svd.sv, g2 = -hat.x[i] * svd.sv + hat.y[i] * svd.cv;
+    const std::array<double, 4> along_u1{modes.c * g1, -modes.s * g1, half * g2, -half * g2};
+    const std::array<double, 4> along_u2{modes.s * g2, modes.c * g2, half * g1, half * g1};
+    for (std::size_t m = 0; m < 4; ++m) {
+      out.rows[m][2 * i] = scale[m] * (along_u1[m] * svd.cu - along_u2[m] * svd.su);
+      out.rows[m][2 * i + 1] = -scale[m] * (along_u1[m] * svd.su + along_u2[m] * svd.cu);
+    }
+  }
   return out;
 }
 
@@ -71,13 +102,12 @@ public:
       variables_[v][1] = mesh.fixed_y[v] ? (p.y > 0.5 * height ? 1 : fixed) : count++;
     }
     gradient_.resize(count);
+    find_pattern();
   }
 
   // Leaves the mesh as it is where there is no way down.
   void step() {
     assemble();
-    if (!is_analysed_) solver_.analyzePattern(hessian_);
-    is_analysed_ = true;
     solver_.factorize(hessian_);
     if (solver_.info() != Eigen::Success) return;
     const Vector s = -solver_.solve(gradient_);
@@ -101,49 +131,71 @@ private:
   std::vector<Corner> variables_; // 0 and 1 are the right side's x and the lower side's y
   Vector gradient_;
   Matrix hessian_;
-  std::vector<Eigen::Triplet<double, int>> entries_;
+  std::vector<std::size_t> numbers_; // of the matrix' entries: triangle by triangle, in the order of for_entries()
   Eigen::SimplicialLDLT<Matrix, Eigen::Lower> solver_;
-  bool is_analysed_ = false;
 
   [[nodiscard]] FlatPoint along(const Vector& s, std::size_t v) const {
     const auto& [x, y] = variables_[v];
     return {x == fixed ? 0 : s[x], y == fixed ? 0 : s[y]};
   }
 
-  void assemble() {
-    gradient_.setZero();
-    entries_.clear();
-    double trace = 0;
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) trace += add(t);
-    const double more = regularisation * trace / static_cast<double>(gradient_.size());
-    for (int i = 0; i < gradient_.size(); ++i) entries_.emplace_back(i, i, more);
-    hessian_.resize(gradient_.size(), gradient_.size());
-    hessian_.setFromTriplets(entries_.begin(), entries_.end());
+  // The rows that a triangle has part in, by coordinate.
+  [[nodiscard]] std::array<int, 6> rows_of(std::size_t t) const {
+    std::array<int, 6> rows{};
+    for (std::size_t i = 0; i < 6; ++i) rows[i] = variables_[mesh_.triangles[t][i / 2]][i % 2];
+    return rows;
   }
 
-  double add(std::size_t t) {
-    const auto& [p, a, b] = mesh_.triangles[t];
-    const PlaneReference& r = mesh_.references[t];
-    const Local local = local_expansion(r, exponent_of(mesh_, r), mesh_.points[p], mesh_.points[a], mesh_.points[b]);
-    // d(ux, uy, vx, vy) / d(px, py, ax, ay, bx, by)
-    Eigen::Matrix<double, 4, 6> by_corner = Eigen::Matrix<double, 4, 6>::Zero();
-    for (int k = 0; k < 2; ++k) {
-      by_corner(k, k) = by_corner(k + 2, k) = -1;
-      by_corner(k, k + 2) = by_corner(k + 2, k + 4) = 1;
+  // visit(entry, i, j) for the entries of the lower triangle that triangle t has part in, by its coordinates.
+  template <class Visit> void for_entries(const std::array<int, 6>& rows, Visit visit) const {
+    for (std::size_t i = 0; i < 6; ++i)
+      for (std::size_t j = 0; j < 6; ++j)
+        if (rows[i] != fixed && rows[j] != fixed && rows[i] >= rows[j]) visit(i, j);
+  }
+
+  // Which numbers of the sparse matrix they are: looked up once.
+  void find_pattern() {
+    std::vector<Eigen::Triplet<double, int>> entries;
+    entries.reserve(static_cast<std::size_t>(gradient_.size()) + 36 * mesh_.triangles.size());
+    for (int i = 0; i < gradient_.size(); ++i) entries.emplace_back(i, i, 0.0);
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      const std::array<int, 6> rows = rows_of(t);
+      for_entries(rows, [&](std::size_t i, std::size_t j) { entries.emplace_back(rows[i], rows[j], 0.0); });
     }
-    const Eigen::Matrix<double, 6, 1> g = by_corner.transpose() * local.gradient;
-    const Eigen::Matrix<double, 6, 6> H = by_corner.transpose() * local.hessian * by_corner;
-    std::array<int, 6> row{};
-    for (std::size_t k = 0; k < 6; ++k) row[k] = variables_[mesh_.triangles[t][k / 2]][k % 2];
-    for (int i = 0; i < 6; ++i) {
-      const int at = row[static_cast<std::size_t>(i)];
-      if (at == fixed) continue;
-      gradient_[at] += g[i];
-      for (int j = 0; j < 6; ++j)
-        if (const int column = row[static_cast<std::size_t>(j)]; column != fixed && column <= at)
-          entries_.emplace_back(at, column, H(i, j));
+    hessian_.resize(gradient_.size(), gradient_.size());
+    hessian_.setFromTriplets(entries.begin(), entries.end());
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      const std::array<int, 6> rows = rows_of(t);
+      for_entries(rows, [&](std::size_t i, std::size_t j) {
+        const int *first = hessian_.innerIndexPtr() + hessian_.outerIndexPtr()[rows[j]],
+                  *end = hessian_.innerIndexPtr() + hessian_.outerIndexPtr()[rows[j] + 1];
+        numbers_.push_back(static_cast<std::size_t>(std::lower_bound(first, end, rows[i]) - hessian_.innerIndexPtr()));
+      });
     }
-    return H.trace();
+    solver_.analyzePattern(hessian_);
+  }
+
+  void assemble() {
+    gradient_.setZero();
+    const std::span<double> values(hessian_.valuePtr(), static_cast<std::size_t>(hessian_.nonZeros()));
+    std::ranges::fill(values, 0.0);
+    std::size_t next = 0;
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      const PlaneReference& r = mesh_.references[t];
+      const auto& [a, b, c] = mesh_.triangles[t];
+      const Local local = expand(r, exponent_of(mesh_, r), {mesh_.points[a], mesh_.points[b], mesh_.points[c]});
+      const std::array<int, 6> rows = rows_of(t);
+      for (std::size_t i = 0; i < 6; ++i)
+        if (rows[i] != fixed) gradient_[rows[i]] += local.gradient[i];
+      for_entries(rows, [&](std::size_t i, std::size_t j) {
+        double sum = 0;
+        for (const std::array<double, 6>& w : local.rows) sum += w[i] * w[j];
+        values[numbers_[next++]] += sum;
+      });
+    }
+    const double more = regularisation * hessian_.diagonal().mean();
+    for (int i = 0; i < gradient_.size(); ++i)
+      values[static_cast<std::size_t>(hessian_.outerIndexPtr()[i])] += more; // the first of its column
   }
 
   [[nodiscard]] bool is_positive() const {
