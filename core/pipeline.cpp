@@ -93,8 +93,10 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   if (request.options.compression == Compression::quantized) quantise(delivery, levels);
   dump_bytes(dump, "4-atlas.png", result.atlas_png);
   dump_bytes(dump, "5-preview.png", result.preview_png);
+  std::vector<asset::Asset::Note> dropped;
   result.glb = asset::write_asset(asset, delivery.primitives, maps.images, extras_of(report),
-                                  request.options.compression, in_asset(levels, report));
+                                  request.options.compression, in_asset(levels, report), &dropped);
+  for (const asset::Asset::Note& note : dropped) report.notes.push_back({note.code, note.message, note.where});
 
   clock.report(Stage::certify, 0, 1);
   certify_file(result.glb, asset, surface, sphere, delivery, report);

@@ -112,6 +112,14 @@ struct Asset {
 // Whether the primitive's material names a texture for the slot, whatever becomes of it.
 [[nodiscard]] bool names_texture(const Asset& asset, const Primitive& primitive, TextureSlot slot);
 
+// One past the highest TEXCOORD set that the textures of the primitive's materials read, those of its variants too.
+// Files that read more than eight are taken to be wrong about it.
+[[nodiscard]] std::uint32_t named_texture_sets(const Asset& asset, const Primitive& primitive);
+
+// Whether the primitive's material has textures besides those of `replaced`.
+[[nodiscard]] bool keeps_textures(const Asset& asset, const Primitive& primitive,
+                                  const std::map<TextureSlot, std::uint32_t>& replaced);
+
 // Whether something else than its material's own normal map is seen through the primitive's TANGENT: another
 // tangent-space texture (clear coat, anisotropy), or a variant's material with one.
 [[nodiscard]] bool shares_tangents(const Asset& asset, const Primitive& primitive);
@@ -167,9 +175,10 @@ void quantise_directions(NewPrimitive& primitive);
 // With Compression::draco the new primitives are written with KHR_draco_mesh_compression, positions and _SPHERE
 // lossless (the sphere coordinates must not be quantised: they would fold); with meshopt and quantized as
 // EXT_meshopt_compression, lossless too, where a triangle may begin with another of its corners. Levels of detail are
-// added as MSFT_lod (levels.h), their meshes behind the document's, level by level.
+// added as MSFT_lod (levels.h), their meshes behind the document's, level by level. notes: gets what of the document
+// could not be kept.
 [[nodiscard]] Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives,
                                 std::span<const NewImage> images, std::string_view extras_json, Compression compression,
-                                std::span<const NewLevel> levels = {});
+                                std::span<const NewLevel> levels = {}, std::vector<Asset::Note>* notes = nullptr);
 
 } // namespace orbis::asset

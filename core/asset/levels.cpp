@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 
+#include "core/asset/animated_property.h"
 #include "core/asset/extensions.h"
 
 namespace orbis::asset {
@@ -77,9 +79,8 @@ NodeUse use_of(const Json& json) {
   NodeUse use;
   for (const Json& animation : json.value("animations", Json::array())) {
     for (const Json& channel : animation.value("channels", Json::array())) {
-      const Json* node = find_path(channel, "target", "node");
-      const Json* path = find_path(channel, "target", "path");
-      if (node && path && *path != "weights") use.moved_or_joint.insert(node->get<std::size_t>());
+      const std::optional<AnimatedNode> animated = animated_node(channel);
+      if (animated && !animated->property.starts_with("weights")) use.moved_or_joint.insert(animated->node);
     }
   }
   for (const Json& skin : json.value("skins", Json::array()))
@@ -178,16 +179,16 @@ private:
     if (!channels || !channels->is_array()) return;
     Json added = Json::array();
     for (Json& channel : *channels) {
-      Json* node = find_path(channel, "target", "node");
-      const Json* path = find_path(channel, "target", "path");
-      if (!node || !path || *path != "weights") continue;
-      if (const auto moved = moved_weights_.find(node->get<std::size_t>()); moved != moved_weights_.end())
-        *node = moved->second;
-      const auto followers = followers_.find(node->get<std::size_t>());
+      const std::optional<AnimatedNode> animated = animated_node(channel);
+      if (!animated || !animated->property.starts_with("weights")) continue;
+      const auto moved = moved_weights_.find(animated->node);
+      const std::size_t node = moved != moved_weights_.end() ? moved->second : animated->node;
+      set_animated_node(channel, node);
+      const auto followers = followers_.find(node);
       if (followers == followers_.end()) continue;
       for (const std::size_t follower : followers->second) {
         Json copy = channel;
-        copy["target"]["node"] = follower;
+        set_animated_node(copy, follower);
         added.push_back(std::move(copy));
       }
     }

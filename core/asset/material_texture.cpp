@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/asset/asset.h"
 #include "core/asset/document.h"
@@ -80,6 +81,25 @@ const Json* variant_mappings(const Asset& asset, const Primitive& primitive) {
   return found && found->is_array() ? found : nullptr;
 }
 
+// visit(info) for every texture of a material, whatever extension has it.
+template <class Visit> void for_texture_infos(const Json& part, const Visit& visit) {
+  if (!part.is_object()) return;
+  if (const Json* index = find(part, "index"); index && index->is_number_unsigned()) visit(part);
+  for (const auto& [key, member] : part.items())
+    if (key != "extras") for_texture_infos(member, visit);
+}
+
+// Its own, and those of its variants.
+std::vector<const Json*> materials_of(const Asset& asset, const Primitive& primitive) {
+  const Json& json = asset.document->json;
+  std::vector<const Json*> out;
+  if (const Json* own = material_of(asset, primitive)) out.push_back(own);
+  if (const Json* mappings = variant_mappings(asset, primitive))
+    for (const Json& mapping : *mappings)
+      if (const Json* number = find(mapping, "material")) out.push_back(&json["materials"][number->get<std::size_t>()]);
+  return out;
+}
+
 } // namespace
 
 std::optional<MaterialTexture> material_texture(const Asset& asset, const Primitive& primitive, TextureSlot slot) {
@@ -110,6 +130,31 @@ std::optional<MaterialTexture> material_texture(const Asset& asset, const Primit
 bool names_texture(const Asset& asset, const Primitive& primitive, TextureSlot slot) {
   const Json* material = material_of(asset, primitive);
   return material && texture_info(*material, slot) != nullptr;
+}
+
+std::uint32_t named_texture_sets(const Asset& asset, const Primitive& primitive) {
+  constexpr std::uint64_t most = 8;
+  std::uint64_t end = 0;
+  const JsonReader reader(asset.document->json);
+  for (const Json* material : materials_of(asset, primitive))
+    for_texture_infos(*material, [&](const Json& info) {
+      std::uint64_t set = reader.integer(info, "texCoord", UINT32_MAX).value_or(0);
+      if (const Json* transform = find_path(info, "extensions", transform_extension))
+        set = reader.integer(*transform, "texCoord", UINT32_MAX).value_or(set);
+      end = std::max(end, set + 1);
+    });
+  return end <= most ? static_cast<std::uint32_t>(end) : 0;
+}
+
+bool keeps_textures(const Asset& asset, const Primitive& primitive,
+                    const std::map<TextureSlot, std::uint32_t>& replaced) {
+  const Json* material = material_of(asset, primitive);
+  if (!material) return false;
+  std::set<const Json*> gone;
+  for (const auto& [slot, image] : replaced) gone.insert(texture_info(*material, slot));
+  bool any = false;
+  for_texture_infos(*material, [&](const Json& info) { any = any || !gone.contains(&info); });
+  return any;
 }
 
 bool shares_tangents(const Asset& asset, const Primitive& primitive) {

@@ -39,14 +39,22 @@ void set_texture(Json& parent, std::string_view key, std::size_t texture, std::u
   }
 }
 
-void set_slot(Json& material, TextureSlot slot, std::size_t texture, std::uint32_t texcoord) {
+// Whether the older model of a material has an image of its own, which the base colour was not baked from.
+bool differs_in_diffuse(const Json& material) {
+  const Json* base = find_path(material, "pbrMetallicRoughness", "baseColorTexture", "index");
+  const Json* diffuse = find_path(material, "extensions", specular_glossiness, "diffuseTexture", "index");
+  return base && diffuse && *base != *diffuse;
+}
+
+void set_slot(Json& material, TextureSlot slot, std::size_t texture, const AtlasLook& look) {
+  const std::uint32_t texcoord = look.texcoord;
   switch (slot) {
   case TextureSlot::base_color:
-    set_texture(material["pbrMetallicRoughness"], "baseColorTexture", texture, texcoord);
-    if (Json* older = find_path(material, "extensions", specular_glossiness); older && older->is_object()) {
+    if (Json* older = find_path(material, "extensions", specular_glossiness);
+        older && older->is_object() && (look.plain_base_color || !differs_in_diffuse(material))) {
       set_texture(*older, "diffuseTexture", texture, texcoord);
     }
-    return;
+    return set_texture(material["pbrMetallicRoughness"], "baseColorTexture", texture, texcoord);
   case TextureSlot::metallic_roughness:
     return set_texture(material["pbrMetallicRoughness"], "metallicRoughnessTexture", texture, texcoord);
   case TextureSlot::occlusion:
@@ -60,7 +68,7 @@ void set_slot(Json& material, TextureSlot slot, std::size_t texture, std::uint32
 }
 
 void show_atlas(Json& material, const AtlasLook& look) {
-  for (const auto& [slot, texture] : look.textures) set_slot(material, slot, texture, look.texcoord);
+  for (const auto& [slot, texture] : look.textures) set_slot(material, slot, texture, look);
   if (!look.plain_base_color) return;
   if (Json* pbr = find(material, "pbrMetallicRoughness")) pbr->erase("baseColorFactor");
   if (Json* older = find_path(material, "extensions", specular_glossiness)) older->erase("diffuseFactor");
@@ -91,6 +99,8 @@ public:
       if (material_of(mapping) == before) mapping["material"] = after;
     }
   }
+
+  [[nodiscard]] const std::vector<MaterialCopy>& copies() const { return copies_; }
 
 private:
   // A material may be changed in place if all who use it show the atlas alike.
@@ -131,6 +141,7 @@ private:
     } else if (shared_.contains(material)) {
       number = materials.size();
       materials.push_back(Json(materials[material]));
+      copies_.push_back({material, number});
     }
     show_atlas(materials[number], user.look);
     replacements_.emplace(key, number);
@@ -141,6 +152,7 @@ private:
   std::map<std::pair<std::size_t, std::size_t>, const AtlasLook*> look_of_;
   std::set<std::size_t> shared_;
   std::map<std::tuple<std::size_t, std::size_t, AtlasLook>, std::size_t> replacements_;
+  std::vector<MaterialCopy> copies_;
 };
 
 } // namespace
@@ -190,22 +202,37 @@ bool is_double_sided(const Asset& asset, const Primitive& primitive) {
   return flag && flag->is_boolean() && flag->get<bool>();
 }
 
-void assign_atlas(Json& document, const std::vector<AtlasUser>& users) {
+std::vector<MaterialCopy> assign_atlas(Json& document, const std::vector<AtlasUser>& users) {
   AtlasMaterials materials(document, users);
   for (const AtlasUser& user : users) materials.assign(user);
+  return materials.copies();
 }
 
 void LevelMaterials::assign(Json& primitive, const AtlasLook& look) {
   if (look.textures.empty()) return;
   const std::size_t before = material_of(primitive);
   if (before == no_material) throw Error(ErrorCode::internal, "a level's primitive has no material to vary");
-  const auto [known, is_new] = copies_.try_emplace({before, look}, document_["materials"].size());
+  primitive["material"] = copy_of(before, look);
+  Json* mappings = variant_mappings(primitive);
+  const auto normal = look.textures.find(TextureSlot::normal);
+  if (!mappings || normal == look.textures.end()) return;
+  // The level's normals are those that its normal map is for, whatever material shows it.
+  const AtlasLook of_variants{look.texcoord, {*normal}, false};
+  for (Json& mapping : *mappings) {
+    const std::size_t material = material_of(mapping);
+    if (material != no_material) mapping["material"] = copy_of(material, material == before ? look : of_variants);
+  }
+}
+
+std::size_t LevelMaterials::copy_of(std::size_t material, const AtlasLook& look) {
+  const auto [known, is_new] = copies_.try_emplace({material, look}, document_["materials"].size());
   if (is_new) {
-    Json copy = document_["materials"][before];
+    Json copy = document_["materials"][material];
     show_atlas(copy, look);
     document_["materials"].push_back(std::move(copy));
+    made_.push_back({material, known->second});
   }
-  primitive["material"] = known->second;
+  return known->second;
 }
 
 } // namespace orbis::asset

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/asset/animated_property.h"
 #include "core/asset/asset.h"
 #include "core/asset/json.h"
 
@@ -44,8 +45,8 @@ struct AtlasUser {
 // Gives every user a material with its look: its own, changed in place, where nothing else uses that one otherwise,
 // else a copy; a new one (named after the mesh, dielectric, roughness 0.8) where it has none. Other textures stay as
 // they are. A normal map that is replaced has scale 1. The mappings of KHR_materials_variants follow where they name
-// the primitive's own material.
-void assign_atlas(Json& document, const std::vector<AtlasUser>& users);
+// the primitive's own material. Returns the copies.
+std::vector<MaterialCopy> assign_atlas(Json& document, const std::vector<AtlasUser>& users);
 
 // The primitives of levels of detail share their materials with the full surface, but for textures of their own.
 class LevelMaterials {
@@ -53,12 +54,18 @@ public:
   explicit LevelMaterials(Json& document) : document_(document) {}
 
   // Gives a primitive, which has a material of the full surface's, a copy of it with these textures; the same copy for
-  // the same material and look.
+  // the same material and look. The materials of its variants get the normal map.
   void assign(Json& primitive, const AtlasLook& look);
 
+  // All that were made so far.
+  [[nodiscard]] std::span<const MaterialCopy> copies() const { return made_; }
+
 private:
+  [[nodiscard]] std::size_t copy_of(std::size_t material, const AtlasLook& look);
+
   Json& document_;
   std::map<std::pair<std::size_t, AtlasLook>, std::size_t> copies_;
+  std::vector<MaterialCopy> made_;
 };
 
 } // namespace orbis::asset

@@ -2,6 +2,7 @@
 #include <set>
 
 #include "core/asset/added_target.h"
+#include "core/asset/animated_property.h"
 #include "core/asset/asset.h"
 #include "core/asset/draco_encoder.h"
 #include "core/asset/extensions.h"
@@ -236,50 +237,20 @@ void write_extras(Json& json, std::string_view text) {
   orbis.update(facts);
 }
 
-bool resolves(const Json& document, const std::string& pointer) {
-  try {
-    return document.contains(Json::json_pointer(pointer));
-  } catch (const Json::exception&) {
-    return false; // not a pointer at all
-  }
-}
-
-// KHR_animation_pointer may animate what the atlas took away (a texture transform): such a channel would point at
-// nothing.
-bool is_dead(const Json& channel, const Json& before, const Json& after) {
-  const Json* pointer = find_path(channel, "target", "extensions", "KHR_animation_pointer", "pointer");
-  if (!pointer || !pointer->is_string()) return false;
-  const auto& text = pointer->get_ref<const std::string&>();
-  return resolves(before, text) && !resolves(after, text);
-}
-
-void drop_dead_channels(Json& json, const Json& before) {
-  Json* animations = find(json, "animations");
-  if (!animations) return;
-  Json kept = Json::array();
-  for (const Json& animation : *animations) {
-    Json channels = Json::array();
-    for (const Json& channel : animation.value("channels", Json::array())) {
-      if (!is_dead(channel, before, json)) channels.push_back(channel);
-    }
-    if (channels.size() == array_size(animation, "channels")) {
-      kept.push_back(animation);
-    } else if (!channels.empty()) {
-      kept.push_back(animation);
-      kept.back()["channels"] = std::move(channels);
-    }
-  }
-  if (kept.empty()) {
-    json.erase("animations");
-  } else {
-    *animations = std::move(kept);
-  }
+void note_dropped(const std::vector<std::string>& pointers, std::vector<Asset::Note>* notes) {
+  if (notes == nullptr) return;
+  for (const std::string& pointer : pointers)
+    notes->push_back({"animation-dropped",
+                      "an animation moves a texture transform, which is baked into the atlas as it stands at rest: its "
+                      "channel is left out",
+                      pointer});
 }
 
 } // namespace
 
 Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, std::span<const NewImage> images,
-                  std::string_view extras_json, Compression compression, std::span<const NewLevel> levels) {
+                  std::string_view extras_json, Compression compression, std::span<const NewLevel> levels,
+                  std::vector<Asset::Note>* notes) {
   if (primitives.size() != asset.primitives.size()) {
     throw Error(ErrorCode::internal, "there must be one new primitive for each of the asset's");
   }
@@ -299,7 +270,8 @@ Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, 
     if (!primitives[i].textures.empty())
       users.push_back({old.mesh, old.primitive, look_of(primitives[i], first_texture)});
   }
-  if (!users.empty()) assign_atlas(out.json, users);
+  std::vector<MaterialCopy> copies;
+  if (!users.empty()) copies = assign_atlas(out.json, users);
   describe_added_targets(out, asset, primitives);
   for (const NewLevel& level : levels)
     for (const NewPrimitive& primitive : level.primitives)
@@ -310,7 +282,9 @@ Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, 
     materials.assign(primitive, look_of(geometry, first_texture));
     return primitive;
   });
-  drop_dead_channels(out.json, document.json);
+  copies.insert(copies.end(), materials.copies().begin(), materials.copies().end());
+  note_dropped(drop_dead_channels(out.json, document.json), notes);
+  animate_copies(out.json, copies);
   if (!document.keeps_numbers) out.drop_unreferenced();
   update_extensions(out.json, document.json, primitives, images);
   write_extras(out.json, extras_json);

@@ -9,6 +9,23 @@
 
 namespace orbis {
 
+namespace {
+
+// Levels keep the seams of the atlas (lod/wedge_mesh.h), not those of the coordinates that other textures have.
+void note_kept_textures(const BakeJob& job) {
+  for (std::size_t p = 0; p < job.asset.primitives.size() && !job.levels.empty(); ++p) {
+    const asset::NewPrimitive& delivered = job.delivery.primitives[p];
+    if (delivered.indices.empty() || !asset::keeps_textures(job.asset, job.asset.primitives[p], delivered.textures))
+      continue;
+    job.report.notes.push_back({"level-texture-coordinates",
+                                "the material has textures that are not baked: on levels of detail they smear where "
+                                "triangles cross the seams of their own coordinates",
+                                pointer_to(job.asset.primitives[p])});
+  }
+}
+
+} // namespace
+
 std::vector<std::byte> atlas_picture(const BakedMaps& maps, const Options& options) {
   const auto largest = std::ranges::max_element(
       maps.pages, {}, [](const texture::Image& page) { return std::uint64_t{page.width} * page.height; });
@@ -44,6 +61,7 @@ BakedMaps bake_maps(const Request& request, const Limits& limits, const SurfaceI
     }
   }
   progress.check();
+  note_kept_textures(job);
   progress.report(Stage::bake, total, total);
   return page.take();
 }

@@ -10,10 +10,11 @@ namespace {
 using asset::Attribute;
 using asset::ComponentType;
 
-std::uint32_t first_free_texcoord(const asset::Primitive& primitive) {
-  std::uint32_t n = 0;
-  while (primitive.find("TEXCOORD_" + std::to_string(n)) != nullptr) ++n;
-  return n;
+std::string texcoord(std::uint32_t n) { return "TEXCOORD_" + std::to_string(n); }
+
+std::uint32_t free_texcoord(const asset::Primitive& primitive, std::uint32_t from) {
+  while (primitive.find(texcoord(from)) != nullptr) ++from;
+  return from;
 }
 
 Attribute float_attribute(std::string name, std::uint32_t components, std::size_t count) {
@@ -82,8 +83,11 @@ Delivery make_delivery(const asset::Asset& asset, const Surface& surface, const 
     const std::size_t count = out.sources[p].size();
     primitive.attributes = interpolate(input.attributes, out.sources[p]);
     for (const auto& target : input.targets) primitive.targets.push_back(interpolate_target(target, out.sources[p]));
-    primitive.atlas_texcoord = first_free_texcoord(input);
-    uv.push_back(float_attribute("TEXCOORD_" + std::to_string(primitive.atlas_texcoord), 2, count));
+    // A set that a texture reads and the input lacks is no place for the atlas: renderers read zeros there, so do ours.
+    primitive.atlas_texcoord = free_texcoord(input, asset::named_texture_sets(asset, input));
+    for (std::uint32_t n = 0; n < primitive.atlas_texcoord; ++n)
+      if (input.find(texcoord(n)) == nullptr) primitive.attributes.push_back(float_attribute(texcoord(n), 2, count));
+    uv.push_back(float_attribute(texcoord(primitive.atlas_texcoord), 2, count));
     sphere.push_back(float_attribute("_SPHERE", 3, count));
   }
   const auto place = [&](const OutputVertex& o, const Vec3f& on_sphere, const Vec2f& in_atlas) {

@@ -29,8 +29,8 @@ struct Delivery {
       component_of; // primitive -> its output triangles' components; no_primitive for riders
 };
 
-// Every attribute of the input at the vertices of the cut mesh, with TEXCOORD_n (the atlas; n: the first that is free)
-// and _SPHERE added. Riders stand behind the triangles of the surface;
+// Every attribute of the input at the vertices of the cut mesh, with TEXCOORD_n (the atlas; n: the first that is free
+// and that no texture of the materials reads) and _SPHERE added. Riders stand behind the triangles of the surface;
 // levels of detail leave them out.
 enum class RiderPolicy { deliver, leave_out };
 [[nodiscard]] Delivery make_delivery(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut,

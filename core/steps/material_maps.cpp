@@ -22,6 +22,12 @@ bool has_alpha(const std::vector<texture::TextureSource>& sources) {
   return std::ranges::any_of(sources, [](const auto& s) { return s.image != nullptr && s.image->channels == 4; });
 }
 
+bool has_alpha(const asset::Attribute& color) {
+  for (std::size_t v = 0; color.components == 4 && v < color.count(); ++v)
+    if (color.get(v, 3) < 1) return true;
+  return false;
+}
+
 // COLOR_n would be multiplied with the base colour: as _COLOR_n it is only kept.
 void set_colors_aside(asset::NewPrimitive& primitive) {
   for (asset::Attribute& a : primitive.attributes) {
@@ -39,6 +45,7 @@ MaterialMaps::MaterialMaps(const BakeJob& job, PageBaking& page)
   if (may_show_own_colors(job.options())) {
     base_color_ = textures_of(job.asset, job.delivery, TextureSlot::base_color, job.report);
     colored_ = bakes_vertex_colors(job.asset, job.delivery);
+    leave_colors_of_kept_textures(base_color_);
   }
   const bool has_own = any(base_color_) || any(colored_);
   job.report.atlas.source = source_name(job.options(), has_own);
@@ -58,6 +65,19 @@ bool MaterialMaps::names_base_color() const {
   });
 }
 
+// A texture that is not baked stays, and is multiplied with the vertex colours as before.
+void MaterialMaps::leave_colors_of_kept_textures(const SlotTextures& baked) {
+  for (std::size_t p = 0; p < colored_.size(); ++p)
+    if (!baked[p] && asset::names_texture(job_.asset, job_.asset.primitives[p], TextureSlot::base_color))
+      colored_[p] = false;
+}
+
+bool MaterialMaps::colors_have_alpha(const std::vector<bool>& colored) const {
+  for (std::size_t p = 0; p < colored.size(); ++p)
+    if (colored[p] && page_.shows(p) && has_alpha(*job_.asset.primitives[p].find("COLOR_0"))) return true;
+  return false;
+}
+
 SlotTextures MaterialMaps::planned(Map map, TextureSlot slot) const {
   if (!job_.wants(map)) return SlotTextures(job_.asset.primitives.size());
   SlotTextures textures = textures_of(job_.asset, job_.delivery, slot, job_.report);
@@ -71,7 +91,10 @@ SlotTextures MaterialMaps::planned(Map map, TextureSlot slot) const {
 void MaterialMaps::bake_base_color() {
   SlotTextures textures = page_.shown(base_color_);
   const bool strict = job_.options().texture == TextureSource::base_color;
+  const SlotTextures named = textures;
   const DecodedImages images = decode(job_.asset, job_.limits, strict, textures, job_.report);
+  for (std::size_t p = 0; p < named.size(); ++p)
+    if (named[p] && !textures[p]) colored_[p] = false;
   std::vector<bool> takes(textures.size());
   for (std::size_t p = 0; p < takes.size(); ++p) {
     takes[p] = page_.shows(p) && (!shows_own_ || textures[p].has_value() || colored_[p]);
@@ -140,7 +163,7 @@ Image MaterialMaps::resample(const SlotTextures& textures, const DecodedImages& 
   const texture::TextureReader reader(page_.map(), page_.values().shown(), uv, page_.primitive_of(), sources, encoding);
   std::vector<texture::CornerColor> colors;
   if (any(colored)) colors = page_.values().colors(colored);
-  const bool alpha = encoding == Encoding::srgb && has_alpha(sources);
+  const bool alpha = encoding == Encoding::srgb && (has_alpha(sources) || colors_have_alpha(colored));
   return texture::bake_texture(page_.map(), reader, colors, encoding, alpha, job_.progress, page_.pool());
 }
 

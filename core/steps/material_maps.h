@@ -22,6 +22,8 @@ public:
 
 private:
   [[nodiscard]] bool names_base_color() const;
+  void leave_colors_of_kept_textures(const SlotTextures& baked);
+  [[nodiscard]] bool colors_have_alpha(const std::vector<bool>& colored) const;
   [[nodiscard]] SlotTextures planned(Map map, asset::TextureSlot slot) const;
   [[nodiscard]] texture::Image resample(const SlotTextures& textures, const DecodedImages& images,
                                         const std::vector<bool>& colored, texture::Encoding encoding);

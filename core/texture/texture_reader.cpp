@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 namespace orbis::texture {
 namespace {
@@ -37,24 +39,28 @@ TextureReader::TextureReader(const TexelMap& map, std::span<const std::uint32_t>
                              Encoding encoding)
     : uv_(uv), source_of_(source_of), sources_(sources) {
   static const Image no_image{1, 1, 3, {0, 0, 0}};
+  using Key = std::tuple<const Image*, Wrap, Wrap>; // mip levels are made once, however many sources share an image
+  std::map<Key, std::size_t> numbers;
   for (const TextureSource& s : sources) {
-    samplers_.emplace_back(s.image != nullptr ? *s.image : no_image, s.wrap_u, s.wrap_v, 1, encoding);
+    const Key key{s.image != nullptr ? s.image : &no_image, s.wrap_u, s.wrap_v};
+    const auto [found, is_new] = numbers.emplace(key, samplers_.size());
+    if (is_new) samplers_.emplace_back(*std::get<0>(key), s.wrap_u, s.wrap_v, 1, encoding);
+    sampler_of_.push_back(found->second);
   }
-  std::vector<std::uint32_t> levels(sources.size(), 1);
+  std::vector<std::uint32_t> levels(samplers_.size(), 1);
   for (const std::uint32_t t : shown) {
-    std::uint32_t& wanted = levels[source_of[t]];
+    std::uint32_t& wanted = levels[sampler_of_[source_of[t]]];
     wanted = std::max(wanted, footprint(t, map.place(t)).level + 1);
   }
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    const TextureSource& s = sources[i];
-    if (levels[i] > 1) samplers_[i] = Sampler(*s.image, s.wrap_u, s.wrap_v, levels[i], encoding);
-  }
+  for (const auto& [key, number] : numbers)
+    if (levels[number] > 1)
+      samplers_[number] = Sampler(*std::get<0>(key), std::get<1>(key), std::get<2>(key), levels[number], encoding);
 }
 
 TextureReader::Footprint TextureReader::footprint(std::uint32_t triangle, const TriangleInPage& place) const {
   Footprint f;
   f.source = &sources_[source_of_[triangle]];
-  f.sampler = &samplers_[source_of_[triangle]];
+  f.sampler = &samplers_[sampler_of_[source_of_[triangle]]];
   if (f.source->image == nullptr) return f;
   const std::array<float, 6>& m = f.source->transform;
   for (std::size_t k = 0; k < 3; ++k) {

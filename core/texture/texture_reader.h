@@ -55,7 +55,8 @@ private:
   std::span<const CornerUv> uv_;
   std::span<const std::uint32_t> source_of_;
   std::span<const TextureSource> sources_;
-  std::vector<Sampler> samplers_; // one per source; without an image one that is never read
+  std::vector<Sampler> samplers_; // one for each image and its wrap modes; without an image one that is never read
+  std::vector<std::size_t> sampler_of_; // by source
 };
 
 } // namespace orbis::texture
