@@ -38,7 +38,7 @@ StreamBody event_stream(JobService& jobs, std::string id, std::uint64_t last_see
   };
   auto stream = std::make_shared<Stream>(Stream{std::nullopt, last_seen});
   return [&jobs, id = std::move(id), comment_every, slot = std::move(slot), stream]() -> std::optional<std::string> {
-    if (stream->ended || jobs.draining()) return std::nullopt;
+    if (stream->ended || jobs.stopped()) return std::nullopt;
     const std::optional<Job> job = jobs.wait(id, stream->seen, comment_every);
     if (!job) return std::nullopt;
     stream->ended = is_final(job->state);

@@ -63,7 +63,10 @@ public:
   // Whether an upload is worth reading: there is a place in the queue, or a job with this Idempotency-Key is known.
   [[nodiscard]] virtual bool has_room(std::string_view idempotency_key) = 0;
   // These answer from memory, whatever the load.
-  [[nodiscard]] virtual bool draining() const = 0;
+  [[nodiscard]] virtual bool draining() const = 0; // takes no more jobs; those that run may still end
+  [[nodiscard]] virtual bool stopped() const = 0;  // no job changes any more
+  // An upload was refused because has_room() said no.
+  virtual void note_refusal() = 0;
   [[nodiscard]] virtual std::chrono::seconds retry_after() const = 0; // when a slot in the queue may be free
   [[nodiscard]] virtual std::string metrics() const = 0;              // Prometheus text format
 };

@@ -39,6 +39,8 @@ constexpr std::array<ProblemType, error_count + refusal_count> table{{
     {"unsupported-media-type", 415, "The media type is not supported"},
     {"key-reused", 422, "The Idempotency-Key was used for another request"},
     {"queue-full", 429, "The queue is full"},
+    {"too-many-waiting", 429, "Too many requests wait"},
+    {"uri-too-long", 414, "The address is too long"},
     {"draining", 503, "The service is shutting down"},
 }};
 

@@ -24,6 +24,8 @@ enum class Refusal {
   unsupported_media_type,
   key_reused,
   queue_full,
+  too_many_waiting,
+  uri_too_long,
   draining,
 };
 

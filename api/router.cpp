@@ -111,6 +111,8 @@ std::string_view type_of_map(std::string_view name) {
   return name.ends_with(".webp") ? "image/webp" : "image/png";
 }
 
+bool is_read(const Request& request) { return request.method == "GET" || request.method == "HEAD"; }
+
 // A stored file with its entity tag and at most one range.
 Response file_response(const Request& request, const StoredFile& file, std::string_view type) {
   const std::string etag = "\"" + file.sha256 + "\"";
@@ -118,7 +120,7 @@ Response file_response(const Request& request, const StoredFile& file, std::stri
   response.set("ETag", etag);
   response.set("Accept-Ranges", "bytes");
   response.set("Cache-Control", "private, immutable");
-  if (matches_etag(request.header("If-None-Match"), etag)) {
+  if (is_read(request) && matches_etag(request.header("If-None-Match"), etag)) {
     response.status = 304;
     return response;
   }
@@ -151,8 +153,6 @@ Response method_not_allowed(std::string_view allowed) {
   response.set("Allow", std::string(allowed));
   return response;
 }
-
-bool is_read(const Request& request) { return request.method == "GET" || request.method == "HEAD"; }
 
 [[noreturn]] void refuse_unknown_path() {
   throw Refused(Refusal::not_found, "there is nothing at this address; /openapi.json lists what there is");
@@ -273,8 +273,9 @@ void Router::check_key(const Request& request) const {
 
 void Router::check_capacity(const Request& request) const {
   if (jobs_.draining()) throw Refused(Refusal::draining, "the service is shutting down; try again soon");
-  if (!jobs_.has_room(request.header("Idempotency-Key")))
-    throw Refused(Refusal::queue_full, "all places in the queue are taken; try again later");
+  if (jobs_.has_room(request.header("Idempotency-Key"))) return;
+  jobs_.note_refusal();
+  throw Refused(Refusal::queue_full, "all places in the queue are taken; try again later");
 }
 
 Response Router::readiness() const {
@@ -287,11 +288,15 @@ Job Router::require(std::string_view id) const {
   throw Refused(Refusal::not_found, "there is no job '" + std::string(id.substr(0, 64)) + "'");
 }
 
-template <class Done> Job Router::wait_until(Job job, std::chrono::milliseconds time, Done done) {
+// Says in the answer that it waited, unless too many others do.
+template <class Done>
+Job Router::wait_until(Job job, std::chrono::seconds time, std::string& applied, Done done) {
   using Clock = std::chrono::steady_clock;
   const auto slot = take_slot(waiting_, settings_.max_waiting);
+  time = std::min(time, settings_.max_wait);
+  if (slot) applied = "wait=" + std::to_string(time.count());
   const auto end = Clock::now() + time;
-  while (slot && !done(job) && !jobs_.draining()) {
+  while (slot && !done(job) && !jobs_.stopped()) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
     if (left.count() <= 0) break;
     auto changed = jobs_.wait(job.id, job.version, left);
@@ -307,17 +312,15 @@ Response Router::post_job(const Request& request, Submission (*parse)(const Requ
   Job job = jobs_.submit(parse(request));
   const std::string address = "/v1/jobs/" + job.id;
   Response response;
-  if (wait) {
-    job =
-        wait_until(std::move(job), std::min(*wait, settings_.max_wait), [](const Job& j) { return is_final(j.state); });
-  }
+  std::string applied;
+  if (wait) job = wait_until(std::move(job), *wait, applied, [](const Job& j) { return is_final(j.state); });
   if (wait && is_final(job.state)) {
     response = result_of(request, job, JobFile::result);
   } else {
     response = json_response(202, to_json(job));
     response.set("Retry-After", "1");
   }
-  if (wait) response.set("Preference-Applied", "wait=" + std::to_string(std::min(*wait, settings_.max_wait).count()));
+  if (!applied.empty()) response.set("Preference-Applied", applied);
   response.set("Location", address);
   return response;
 }
@@ -325,15 +328,16 @@ Response Router::post_job(const Request& request, Submission (*parse)(const Requ
 Response Router::get_job(const Request& request, std::string_view id) {
   Job job = require(id);
   const auto wait = preferred_wait(request.header("Prefer"));
+  std::string applied;
   if (wait) {
     const auto stage_of = [](const Job& j) { return j.progress ? static_cast<int>(j.progress->stage) : -1; };
     const auto state = job.state;
     const int stage = stage_of(job);
-    job = wait_until(std::move(job), std::min(*wait, settings_.max_wait),
+    job = wait_until(std::move(job), *wait, applied,
                      [&](const Job& j) { return is_final(j.state) || j.state != state || stage_of(j) != stage; });
   }
   Response response = job_response(request, job);
-  if (wait) response.set("Preference-Applied", "wait=" + std::to_string(std::min(*wait, settings_.max_wait).count()));
+  if (!applied.empty()) response.set("Preference-Applied", applied);
   return response;
 }
 
@@ -414,7 +418,7 @@ Response Router::get_events(const Request& request, std::string_view id) {
   // All was seen: 204 tells an EventSource not to come back.
   if (is_final(job.state) && last_seen == job.version) return Response{204, {}, std::string{}};
   auto slot = take_slot(waiting_, settings_.max_waiting);
-  if (!slot) throw Refused(Refusal::queue_full, "too many clients wait for events; poll the job instead");
+  if (!slot) throw Refused(Refusal::too_many_waiting, "too many clients wait for jobs; poll this one instead");
   Response response;
   response.set("Content-Type", "text/event-stream");
   response.set("Cache-Control", "no-store");

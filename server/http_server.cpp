@@ -8,12 +8,14 @@
 #include <thread>
 
 #define CPPHTTPLIB_LISTEN_BACKLOG 512
+#define CPPHTTPLIB_REQUEST_URI_MAX_LENGTH 32000 // the features of a morph may be in it; lines end at 32768
 #include <httplib.h>
 
 #include "api/json.h"
 #include "server/connections.h"
 #include "server/file_descriptor.h"
 #include "server/file_writer.h"
+#include "server/http_text.h"
 #include "server/log.h"
 #include "server/web_files.h"
 
@@ -24,6 +26,8 @@ using Clock = std::chrono::steady_clock;
 
 // The connection that this thread serves.
 thread_local Connections::Handle current_connection;
+// Whether its last answer was an error: such answers say that the connection is closed.
+thread_local bool answered_with_error = false;
 
 api::Request plain_request(const httplib::Request& request) {
   api::Request plain;
@@ -53,6 +57,13 @@ void send_stream(api::StreamBody next, const std::string& type, httplib::Respons
     sink.done();
     return true;
   });
+}
+
+// As the library found it, but for what it takes from a plain `filename`.
+std::string file_name_of(const httplib::FormData& part) {
+  const auto header = part.headers.find("Content-Disposition");
+  if (header == part.headers.end() || header_parameter(header->second, "filename*")) return part.filename;
+  return header_parameter(header->second, "filename").value_or(part.filename);
 }
 
 void fill(api::Response answer, httplib::Response& response) {
@@ -121,7 +132,7 @@ bool receive(Upload& upload, const httplib::Request& request, const httplib::Con
   bool complete = false;
   if (request.is_multipart_form_data()) {
     complete =
-        read([&](const httplib::FormData& part) { return upload.begin(part.name, part.filename, part.content_type); },
+        read([&](const httplib::FormData& part) { return upload.begin(part.name, file_name_of(part), part.content_type); },
              write);
   } else {
     complete = upload.begin("model", {}, {}) && read(write);
@@ -148,11 +159,13 @@ void send_web_file(const WebFile& file, httplib::Response& response) {
 
 bool is_probe(const std::string& path) { return path == "/livez" || path == "/readyz" || path == "/metrics"; }
 
-// Runs connections on the library's threads, and makes room for those that wait.
+// Runs connections on as many threads of the library as there are places, up to a number beyond which it grows when
+// needed (a pool that grows counts threads that were woken and have not begun as idle, and lets connections wait for
+// them), and makes room for those that wait.
 class ConnectionQueue final : public httplib::TaskQueue {
 public:
   ConnectionQueue(Connections& connections, std::size_t threads)
-      : connections_(connections), pool_(std::min<std::size_t>(8, threads), threads),
+      : connections_(connections), pool_(std::min<std::size_t>(512, threads), threads),
         room_maker_([&connections](const std::stop_token& stop) { connections.make_room_until(stop); }) {}
   bool enqueue(std::function<void()> task) override {
     connections_.accepted();
@@ -183,13 +196,14 @@ public:
         answer_upload(request, response, reader);
       });
     }
-    set_error_handler([](const auto&, auto& response) {
+    set_error_handler([this](const auto&, auto& response) {
       explain(response);
       return HandlerResponse::Handled;
     });
     set_exception_handler(
         [](const auto&, auto& response, const std::exception_ptr& exception) { explain(exception, response); });
     set_post_routing_handler([](const auto&, auto& response) {
+      response.set_header("Date", http_date(std::chrono::system_clock::now()));
       if (response.status == 204 || response.status == 304) response.headers.erase("Content-Length");
     });
     set_logger([this](const auto& request, const auto& response) { record(request, response); });
@@ -219,8 +233,11 @@ private:
     const bool result = httplib::detail::process_server_socket(
         svr_sock_, socket, keep_alive_max_count_, keep_alive_timeout_sec_, read_timeout_sec_, read_timeout_usec_,
         write_timeout_sec_, write_timeout_usec_, [&](httplib::Stream& stream, bool close, bool& closed) {
-          return process_request(stream, remote_address, remote_port, local_address, local_port, close, closed,
-                                 prepare);
+          answered_with_error = false;
+          const bool goes_on = process_request(stream, remote_address, remote_port, local_address, local_port, close,
+                                               closed, prepare);
+          closed = closed || answered_with_error; // as the library tells the client
+          return goes_on;
         });
     connections_.close(current_connection);
     ::shutdown(socket, SHUT_RDWR);
@@ -289,14 +306,18 @@ private:
   }
 
   // Gives errors of the library itself their problem document.
-  static void explain(httplib::Response& response) {
+  void explain(httplib::Response& response) const {
     if (!response.body.empty()) return;
     response.headers.erase("Content-Length");
     switch (response.status) {
     case 413:
-      return fill(
-          api::make_problem(Error(ErrorCode::too_large, "the body is larger than max_bytes, a limit of this service")),
-          response);
+      (void)refuse_large(settings_.max_bytes + 1, response);
+      return;
+    case 414:
+      return fill(api::make_problem(api::Refusal::uri_too_long,
+                                    "the address is longer than " + std::to_string(CPPHTTPLIB_REQUEST_URI_MAX_LENGTH) +
+                                        " bytes; options may be a part of the body, 'options', as JSON"),
+                  response);
     case 415:
       return fill(api::make_problem(api::Refusal::unsupported_media_type, "compressed bodies are not accepted"),
                   response);
@@ -306,8 +327,9 @@ private:
       return fill(api::make_problem(Error(ErrorCode::internal, "the request failed; the log says why")), response);
     default:
       return fill(api::make_problem(api::Refusal::bad_request,
-                                    "the request is not HTTP as it should be, or its body is "
-                                    "cut off or no valid multipart/form-data"),
+                                    "the request is not HTTP as it should be, a header is longer than 8192 bytes, or "
+                                    "its body is cut off or no valid multipart/form-data of at most " +
+                                        std::to_string(Upload::max_parts) + " parts"),
                   response);
     }
   }
@@ -328,6 +350,7 @@ private:
   void record(const httplib::Request& request, const httplib::Response& response) {
     const auto start = request.start_time_;
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    answered_with_error = response.status >= 400;
     metrics_.request(request.method, response.status, seconds);
     if (is_probe(request.path)) return;
     log_event(Level::info, "request",

@@ -138,6 +138,7 @@ JobStore::JobStore(const std::filesystem::path& file)
           "INSERT INTO jobs (state, expires, document, id, idempotency_key, cache_key) VALUES (?, ?, ?, ?, ?, ?)")),
       update_(database_.prepare("UPDATE jobs SET state = ?, expires = ?, document = ? WHERE id = ?")),
       find_(database_.prepare(ORBIS_COLUMNS "WHERE id = ?")),
+      release_key_(database_.prepare("UPDATE jobs SET idempotency_key = NULL WHERE id = ?")),
       find_by_key_(database_.prepare(ORBIS_COLUMNS "WHERE idempotency_key = ?")),
       find_result_(
           database_.prepare(ORBIS_COLUMNS "WHERE cache_key = ? AND state = 'succeeded' ORDER BY id DESC LIMIT 1")),
@@ -215,6 +216,8 @@ std::vector<StoredJob> JobStore::list(const api::JobQuery& query) {
 std::vector<StoredJob> JobStore::unfinished() { return rows(unfinished_); }
 
 std::vector<StoredJob> JobStore::due(api::Time time) { return rows(due_.bind(0, time.time_since_epoch().count())); }
+
+void JobStore::release_key(std::string_view id) { release_key_.bind(0, id).run(); }
 
 void JobStore::forget_expired(api::Time time) { forget_.bind(0, time.time_since_epoch().count()).run(); }
 

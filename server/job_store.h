@@ -46,12 +46,14 @@ public:
   [[nodiscard]] std::vector<StoredJob> unfinished();
   // Finished jobs whose time is over at `time`, at most 100.
   [[nodiscard]] std::vector<StoredJob> due(api::Time time);
+  // Another job may have its Idempotency-Key.
+  void release_key(std::string_view id);
   // Forgets jobs that expired before `time`.
   void forget_expired(api::Time time);
 
 private:
   Database database_;
-  Statement insert_, update_, find_, find_by_key_, find_result_, list_, unfinished_, due_, forget_;
+  Statement insert_, update_, find_, release_key_, find_by_key_, find_result_, list_, unfinished_, due_, forget_;
 };
 
 } // namespace orbis::server

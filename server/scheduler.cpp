@@ -12,6 +12,21 @@ namespace orbis::server {
 using api::Job;
 using api::JobState;
 
+namespace {
+
+bool is_expired(const Job& job, api::Time time) {
+  return job.state == JobState::expired || (job.expires && *job.expires <= time);
+}
+
+// Nothing is left of it but that it was there.
+void expire(Job& job) {
+  job.state = JobState::expired;
+  job.result.reset();
+  job.maps.clear();
+}
+
+} // namespace
+
 Scheduler::Scheduler(JobStore& store, BlobStore& blobs, JobRunner& runner, Metrics& metrics,
                      const SchedulerSettings& settings)
     : store_(store), blobs_(blobs), runner_(runner), metrics_(metrics), settings_(settings),
@@ -69,15 +84,16 @@ void Scheduler::drain(std::chrono::milliseconds grace) {
   }
   lock.unlock();
   threads_.clear(); // stops and joins
+  stopped_ = true;
+  lock.lock();
+  changes_.notify_all();
 }
 
 void Scheduler::collect_garbage(api::Time time) {
   const Lock lock(mutex_);
   for (StoredJob& stored : store_.due(time)) {
-    stored.job.state = JobState::expired;
-    stored.job.result.reset();
+    expire(stored.job);
     stored.outputs.clear();
-    stored.job.maps.clear();
     changed(stored);
     remove_files(stored.job.id);
     log_job("job_expired", stored.job);
@@ -129,6 +145,10 @@ std::optional<Job> Scheduler::earlier_submission(const std::string& key, const s
   if (key.empty()) return std::nullopt;
   const auto earlier = store_.find_by_key(key);
   if (!earlier) return std::nullopt;
+  if (is_expired(earlier->job, api::now())) { // nothing is left that the key could stand for
+    store_.release_key(earlier->job.id);
+    return std::nullopt;
+  }
   if (earlier->fingerprint != fingerprint) {
     throw api::Refused(api::Refusal::key_reused,
                        "this Idempotency-Key came with another model or other options before; use a new key");
@@ -215,7 +235,10 @@ Job Scheduler::shown(const StoredJob& stored) const {
 
 std::optional<Job> Scheduler::find_locked(std::string_view id) {
   if (const auto live = live_.find(id); live != live_.end()) return shown(live->second.stored);
-  if (const auto stored = store_.find(id)) return stored->job;
+  if (auto stored = store_.find(id)) {
+    if (is_expired(stored->job, api::now())) expire(stored->job); // though its row and files may wait for the collection
+    return std::move(stored->job);
+  }
   return std::nullopt;
 }
 
@@ -229,7 +252,7 @@ std::optional<Job> Scheduler::wait(std::string_view id, std::uint64_t version, s
   const auto unchanged = [&] {
     const auto live = live_.find(id);
     return live != live_.end() && live->second.stored.job.version == version &&
-           !is_final(live->second.stored.job.state) && !draining_;
+           !is_final(live->second.stored.job.state) && !stopped_;
   };
   changes_.wait_for(lock, timeout, [&] { return !unchanged(); });
   return find_locked(id);

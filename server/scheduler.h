@@ -55,6 +55,8 @@ public:
   [[nodiscard]] std::optional<api::StoredFile> map(std::string_view id, std::string_view name) override;
   [[nodiscard]] bool has_room(std::string_view idempotency_key) override;
   [[nodiscard]] bool draining() const override { return draining_; }
+  [[nodiscard]] bool stopped() const override { return stopped_; }
+  void note_refusal() override { metrics_.job_refused(); }
   [[nodiscard]] std::chrono::seconds retry_after() const override;
   [[nodiscard]] std::string metrics() const override;
 
@@ -105,7 +107,7 @@ private:
   TimeToGoModel time_to_go_;
   std::atomic<std::size_t> queued_{0}, running_{0};
   std::atomic<double> mean_wall_ms_{1000};
-  std::atomic<bool> draining_{false};
+  std::atomic<bool> draining_{false}, stopped_{false};
   std::vector<std::jthread> threads_;
 };
 

@@ -108,11 +108,14 @@ async function follow(state) {
   let last = "";
   while (!isOver(state.state)) {
     const stream = await request(state.links.events, {headers: last ? {"Last-Event-ID": last} : {}});
+    let heard = false;
     for await (const {id, event, data} of eventsOf(stream)) {
+      heard = true;
       last = id;
       state = event === "state" ? data : {...state, progress: data};
       show(state);
     }
+    if (!heard) await new Promise((resolve) => setTimeout(resolve, 1000)); // the service may be going down
     // Whatever happened meanwhile, and whether the service is still there.
     state = await (await request(state.links.self)).json();
     show(state);

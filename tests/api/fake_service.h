@@ -16,7 +16,8 @@ public:
   std::map<api::JobFile, api::StoredFile> files;
   std::map<std::string, api::StoredFile, std::less<>> maps;
   std::vector<api::Submission> submissions;
-  bool is_draining = false, is_full = false;
+  bool is_draining = false, is_stopped = false, is_full = false;
+  int refusals = 0;
   std::string known_key;
   // What happens to a submitted job at once.
   std::function<void(api::Job&)> on_submit = [](api::Job&) {};
@@ -74,6 +75,8 @@ public:
     const auto it = maps.find(name);
     return it == maps.end() ? std::nullopt : std::optional(it->second);
   }
+  [[nodiscard]] bool stopped() const override { return is_stopped; }
+  void note_refusal() override { ++refusals; }
   [[nodiscard]] bool draining() const override { return is_draining; }
   [[nodiscard]] bool has_room(std::string_view idempotency_key) override {
     return !is_full || (!idempotency_key.empty() && idempotency_key == known_key);

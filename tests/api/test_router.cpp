@@ -330,6 +330,7 @@ TEST_CASE_FIXTURE(Desk, "a full queue is 429 and a service that shuts down 503, 
   api::Router router(service, settings);
   CHECK_FALSE(router.refuse_early({"POST", "/v1/jobs", {}, {{"Idempotency-Key", "k1"}}, {}}).has_value());
   CHECK(router.refuse_early({"POST", "/v1/jobs", {}, {{"Idempotency-Key", "k2"}}, {}}).value().status == 429);
+  CHECK(service.refusals == 1); // the service counts what does not come to it
   CHECK(post_model({}, {{"Idempotency-Key", "k1"}}).status == 202);
   CHECK(ask("GET", "/readyz").status == 200);
   service.is_draining = true;
@@ -413,5 +414,7 @@ TEST_CASE_FIXTURE(Desk, "places for requests that wait are bounded") {
   const std::string address = job(api::JobState::running);
   CHECK(ask("GET", address + "/events").status == 429);
   service.on_wait = [](api::Job&) { FAIL("a request waits without a place"); };
-  CHECK(ask("GET", address, {{"Prefer", "wait=60"}}).status == 200);
+  const auto response = ask("GET", address, {{"Prefer", "wait=60"}});
+  CHECK(response.status == 200);
+  CHECK(response.header("Preference-Applied").empty()); // it was not waited for
 }

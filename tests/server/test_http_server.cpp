@@ -139,6 +139,37 @@ TEST_CASE_FIXTURE(Site, "multipart/form-data brings model, files and options") {
   CHECK(runner.last_task.files[0].bytes == 8);
 }
 
+TEST_CASE_FIXTURE(Site, "names of files may hold what ends other parameters") {
+  open();
+  const std::string body =
+      "--x\r\nContent-Disposition: form-data; name=\"model\"; filename=\"m.gltf\"\r\n\r\n{}\r\n"
+      "--x\r\nContent-Disposition: form-data; name=\"file\"; filename=\"a;b=1.bin\"\r\n\r\n1\r\n"
+      "--x\r\nContent-Disposition: form-data; filename*=UTF-8''%C3%A9.bin; name=file2\r\n\r\n2\r\n--x--\r\n";
+  CHECK(ask("POST", "/v1/jobs", "Content-Type: multipart/form-data; boundary=x\r\nPrefer: wait=60\r\n", body).status ==
+        200);
+  REQUIRE(runner.last_task.files.size() == 2);
+  CHECK(runner.last_task.files[0].name == "a;b=1.bin");
+  CHECK(runner.last_task.files[1].name == "\u00e9.bin");
+}
+
+TEST_CASE_FIXTURE(Site, "a connection whose request was refused is closed, as the answer says") {
+  open();
+  const auto socket = connect();
+  send(socket, "GET /nothing HTTP/1.1\r\nHost: test\r\n\r\n");
+  const Answer answer = receive(socket); // to the end of the stream
+  CHECK(answer.status == 404);
+  CHECK(answer.header("Connection") == "close");
+  CHECK_FALSE(answer.header("Date").empty());
+}
+
+TEST_CASE_FIXTURE(Site, "an address may be long, but not endless") {
+  open();
+  CHECK(ask("GET", "/v1/jobs?cursor=" + std::string(20'000, 'A')).status == 400); // read, and no cursor
+  const Answer answer = ask("GET", "/v1/jobs?cursor=" + std::string(32'100, 'A'));
+  CHECK(answer.status == 414);
+  CHECK(answer.body.find("uri-too-long") != std::string::npos);
+}
+
 TEST_CASE_FIXTURE(Site, "a body that is too large is 413, announced or not") {
   server::HttpSettings settings;
   settings.max_bytes = 1000;

@@ -250,8 +250,22 @@ TEST_CASE("draining lets running jobs finish") {
   Service service(FakeRunner::Behaviour::hang);
   const api::Job running = service.submit();
   service.runner.wait_started(1);
-  const std::jthread releaser([&] { service.runner.release(); });
+  // Who waits goes on waiting while it may still end.
+  std::optional<api::Job> seen;
+  std::jthread waiter([&] {
+    const std::uint64_t version = service.scheduler->find(running.id)->version;
+    seen = service.scheduler->wait(running.id, version, std::chrono::seconds(60));
+  });
+  const std::jthread releaser([&] {
+    while (!service.scheduler->draining()) std::this_thread::yield();
+    service.runner.release();
+  });
+  CHECK_FALSE(service.scheduler->stopped());
   service.scheduler->drain(std::chrono::seconds(60));
+  CHECK(service.scheduler->stopped());
+  waiter.join();
+  REQUIRE(seen.has_value());
+  CHECK(seen->state == JobState::failed);
   CHECK(service.scheduler->find(running.id)->state == JobState::failed); // as released: by itself, not stopped
   CHECK(service.scheduler->find(running.id)->problem->detail == "released");
 }
@@ -284,7 +298,12 @@ TEST_CASE("what has expired is not served, whether it was collected or not") {
   Service service;
   service.settings.time_to_live = std::chrono::seconds(0);
   service.restart();
-  const api::Job job = service.finished(service.submit().id);
+  const api::Job job = service.finished(service.submit("key").id);
+  CHECK(service.scheduler->find(job.id)->state == JobState::expired);
+  CHECK(service.scheduler->list({}).items.at(0).state == JobState::expired);
+  const api::Job again = service.submit("key", "glTF other"); // the key is free
+  CHECK(again.id != job.id);
+  (void)service.finished(again.id);
   CHECK_FALSE(service.scheduler->file(job.id, api::JobFile::result).has_value());
 }
 

@@ -7,6 +7,7 @@
 
 #include "server/connections.h"
 #include "server/file_descriptor.h"
+#include "server/http_text.h"
 #include "server/sha256.h"
 #include "server/time_to_go.h"
 #include "server/ulid.h"
@@ -74,4 +75,20 @@ TEST_CASE("the time to go is learnt from the jobs before") {
   CHECK(estimate->p50 == doctest::Approx(80));
   CHECK(estimate->p90 == doctest::Approx(380));
   CHECK(model.estimate(half_way, 10'000)->p90 == 0);
+}
+
+TEST_CASE("dates of HTTP are in English and in GMT") {
+  CHECK(http_date(std::chrono::system_clock::from_time_t(784111777)) == "Sun, 06 Nov 1994 08:49:37 GMT");
+}
+
+TEST_CASE("parameters of a header are found whatever the quoted ones hold") {
+  const char* const header = "form-data; NAME=file; filename=\"a;b=1 name=x.bin\"; empty=\"\"; flag";
+  CHECK(header_parameter(header, "name") == "file");
+  CHECK(header_parameter(header, "filename") == "a;b=1 name=x.bin");
+  CHECK(header_parameter(header, "empty") == "");
+  CHECK_FALSE(header_parameter(header, "flag").has_value());
+  CHECK_FALSE(header_parameter(header, "b").has_value());
+  CHECK(header_parameter("form-data; filename=\"cut off", "filename") == "cut off");
+  CHECK_FALSE(header_parameter("form-data", "name").has_value());
+  CHECK_FALSE(header_parameter("", "name").has_value());
 }
