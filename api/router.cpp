@@ -289,8 +289,7 @@ Job Router::require(std::string_view id) const {
 }
 
 // Says in the answer that it waited, unless too many others do.
-template <class Done>
-Job Router::wait_until(Job job, std::chrono::seconds time, std::string& applied, Done done) {
+template <class Done> Job Router::wait_until(Job job, std::chrono::seconds time, std::string& applied, Done done) {
   using Clock = std::chrono::steady_clock;
   const auto slot = take_slot(waiting_, settings_.max_waiting);
   time = std::min(time, settings_.max_wait);

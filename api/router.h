@@ -54,8 +54,7 @@ private:
   // Why there are no files of the job; nothing where it has succeeded.
   [[nodiscard]] std::optional<Response> refuse_unfinished(const Job& job) const;
   // Waits until `done` holds for the job or the time is over.
-  template <class Done>
-  Job wait_until(Job job, std::chrono::seconds time, std::string& applied, Done done);
+  template <class Done> Job wait_until(Job job, std::chrono::seconds time, std::string& applied, Done done);
 
   JobService& jobs_;
   RouterSettings settings_;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <map>
+#include <set>
 
 #include "api/json.h"
 #include "core/model_format.h"
@@ -39,9 +41,24 @@ Json parse_options_part(const Part& part) {
   return json;
 }
 
+// A name as a step of a JSON pointer (RFC 6901).
+std::string escaped(std::string_view name) {
+  std::string out;
+  for (const char c : name) {
+    if (c == '~' || c == '/')
+      out += c == '~' ? "~0" : "~1";
+    else
+      out += c;
+  }
+  return out;
+}
+
 // A list of words or numbers is what a query would name with commas between.
 std::string option_text(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
+  constexpr double exact = 9e15; // 2048.0 is an integer to JSON Schema
+  if (value.is_number_float() && std::abs(value.get<double>()) < exact && std::trunc(value.get<double>()) == value)
+    return std::to_string(static_cast<std::int64_t>(value.get<double>()));
   const bool is_list = value.is_array() && std::ranges::all_of(value, [](const Json& item) {
                          return item.is_string() || item.is_number();
                        });
@@ -58,15 +75,19 @@ Options parse_options(const Request& request, const Part* options_part) {
     const Json json = parse_options_part(*options_part);
     for (const auto& [name, value] : json.items()) values[name] = option_text(value);
   }
-  for (const auto& [name, value] : request.query) values[name] = value;
+  std::vector<FieldError> errors;
+  std::set<std::string> in_query;
+  for (const auto& [name, value] : request.query) {
+    values[name] = value;
+    if (!in_query.insert(name).second) errors.push_back({"/" + escaped(name), "'" + name + "' is given twice"});
+  }
 
   Options options;
-  std::vector<FieldError> errors;
   for (const auto& [name, value] : values) {
     try {
       set_option(options, name, value);
     } catch (const Error& error) {
-      errors.push_back({"/" + name, error.message()});
+      errors.push_back({"/" + escaped(name), error.message()});
     }
   }
   if (!errors.empty()) {
@@ -96,6 +117,7 @@ Submission parse_parts(const Request& request, std::string_view model_name) {
   const Part* options = nullptr;
   for (const Part& part : request.parts) {
     if (part.name == "options") {
+      if (options != nullptr) refuse(Refusal::bad_request, "there are two parts named 'options'");
       options = &part;
     } else if (part.name == model_name) {
       if (!submission.model.name.empty())
@@ -105,6 +127,8 @@ Submission parse_parts(const Request& request, std::string_view model_name) {
       refuse(Refusal::bad_request, "the part '" + part.name.substr(0, 64) + "' has no file name; parts are '" +
                                        std::string(model_name) + "', 'options', or files that the model names");
     } else {
+      if (std::ranges::find(submission.files, part.file_name, &Part::file_name) != submission.files.end())
+        refuse(Refusal::bad_request, "there are two files named '" + part.file_name.substr(0, 64) + "'");
       submission.files.push_back(part);
     }
   }

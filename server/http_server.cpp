@@ -131,9 +131,9 @@ bool receive(Upload& upload, const httplib::Request& request, const httplib::Con
   };
   bool complete = false;
   if (request.is_multipart_form_data()) {
-    complete =
-        read([&](const httplib::FormData& part) { return upload.begin(part.name, file_name_of(part), part.content_type); },
-             write);
+    complete = read(
+        [&](const httplib::FormData& part) { return upload.begin(part.name, file_name_of(part), part.content_type); },
+        write);
   } else {
     complete = upload.begin("model", {}, {}) && read(write);
   }
@@ -234,8 +234,8 @@ private:
         svr_sock_, socket, keep_alive_max_count_, keep_alive_timeout_sec_, read_timeout_sec_, read_timeout_usec_,
         write_timeout_sec_, write_timeout_usec_, [&](httplib::Stream& stream, bool close, bool& closed) {
           answered_with_error = false;
-          const bool goes_on = process_request(stream, remote_address, remote_port, local_address, local_port, close,
-                                               closed, prepare);
+          const bool goes_on =
+              process_request(stream, remote_address, remote_port, local_address, local_port, close, closed, prepare);
           closed = closed || answered_with_error; // as the library tells the client
           return goes_on;
         });

@@ -236,7 +236,8 @@ Job Scheduler::shown(const StoredJob& stored) const {
 std::optional<Job> Scheduler::find_locked(std::string_view id) {
   if (const auto live = live_.find(id); live != live_.end()) return shown(live->second.stored);
   if (auto stored = store_.find(id)) {
-    if (is_expired(stored->job, api::now())) expire(stored->job); // though its row and files may wait for the collection
+    if (is_expired(stored->job, api::now()))
+      expire(stored->job); // though its row and files may wait for the collection
     return std::move(stored->job);
   }
   return std::nullopt;

@@ -75,12 +75,14 @@ std::string percent_decoded(std::string_view uri) {
 }
 
 const Bytes* find_attachment(const Attachments& attachments, std::string_view uri) {
-  std::string name = percent_decoded(uri);
-  while (name.substr(0, 2) == "./") name.erase(0, 2);
-  auto found = attachments.find(name);
-  const bool is_relative = name.find(':') == std::string::npos;
-  if (found == attachments.end() && is_relative) found = attachments.find(name.substr(name.rfind('/') + 1));
-  return found == attachments.end() ? nullptr : &found->second;
+  for (std::string name : {percent_decoded(uri), std::string(uri)}) {
+    while (name.starts_with("./")) name.erase(0, 2);
+    auto found = attachments.find(name);
+    const bool is_relative = name.find(':') == std::string::npos;
+    if (found == attachments.end() && is_relative) found = attachments.find(name.substr(name.rfind('/') + 1));
+    if (found != attachments.end()) return &found->second;
+  }
+  return nullptr;
 }
 
 std::string shown(std::string_view uri) {

@@ -154,6 +154,26 @@ TEST_CASE_FIXTURE(Desk, "every bad option is named, unknown ones too") {
   CHECK(service.submissions.empty());
 }
 
+TEST_CASE_FIXTURE(Desk, "what is given twice is refused, and pointers are escaped") {
+  const auto response = post_model({{"texture_size", "256"}, {"texture_size", "512"}, {"a/b~c", "1"}});
+  CHECK(response.status == 422);
+  const json errors = body_of(response)["errors"];
+  REQUIRE(errors.size() == 2);
+  CHECK(errors[0]["detail"] == "'texture_size' is given twice");
+  CHECK(errors[1]["pointer"] == "/a~1b~0c");
+  const api::Part model = part("model", "", "glTF"), options = part("options", "", "{}"),
+                  file = part("f", "a.bin", "1");
+  CHECK(post({model, options, options}).status == 400);
+  CHECK(post({model, file, file}).status == 400);
+}
+
+TEST_CASE_FIXTURE(Desk, "a number without a fraction is an integer, however it is written") {
+  const auto response = post({part("model", "", "glTF...."), part("options", "", R"({"texture_size": 2.56e2})")});
+  CHECK(response.status == 202);
+  CHECK(body_of(response)["options"]["texture_size"] == 256);
+  CHECK(post({part("model", "", "glTF...."), part("options", "", R"({"texture_size": 256.5})")}).status == 422);
+}
+
 TEST_CASE_FIXTURE(Desk, "an options part that is no JSON object is refused") {
   for (const char* text : {"", "[]", "{", "texture_size=3", R"({"a":{"b":{"c":{"d":{"e":{}}}}}})"}) {
     CAPTURE(text);

@@ -249,6 +249,14 @@ TEST_CASE("an image that did not come is a note where the model came alone") {
   CHECK(asset.notes[1].where == "/images/1");
 }
 
+TEST_CASE("a file is found by its decoded name, and by its name as it is written") {
+  GltfBuilder b = tetrahedron();
+  b.append("images", Json{{"uri", "folder/a%20b.png"}});
+  CHECK(read(b.glb(), {{"a b.png", test::tiny_png()}}).notes.empty());
+  CHECK(read(b.glb(), {{"a%20b.png", test::tiny_png()}}).notes.empty());
+  CHECK_THROWS_AS((void)read(b.glb(), {{"a+b.png", test::tiny_png()}}), Error);
+}
+
 TEST_CASE("where files came along, an image that did not is an error that names it, unless it lies elsewhere") {
   GltfBuilder b = tetrahedron();
   for (const auto uri : {"http://127.0.0.1:1/a.png", "a.png"}) b.append("images", Json{{"uri", uri}});
