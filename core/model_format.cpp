@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <array>
 
+#include "core/utf8.h"
+
 namespace orbis {
 namespace {
 
 constexpr std::string_view white_space = " \t\r\n";
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 std::string_view trimmed_front(std::string_view text) {
   const std::size_t first = text.find_first_not_of(white_space);
@@ -66,7 +67,7 @@ std::optional<ModelFormat> recognise(std::string_view head, std::uint64_t size) 
   if (head.starts_with("PK\x03\x04") || head.starts_with("PK\x05\x06")) return ModelFormat::zip;
   if (head.starts_with("ply\n") || head.starts_with("ply\r")) return ModelFormat::ply;
   if (is_binary_stl(head, size)) return ModelFormat::stl;
-  if (head.starts_with(byte_order_mark)) head.remove_prefix(byte_order_mark.size());
+  head = without_byte_order_mark(head);
   const std::string_view text = trimmed_front(head);
   if (text.starts_with('{') || text.starts_with('[')) return ModelFormat::gltf;
   if (text.starts_with("solid") && is_text(head)) return ModelFormat::stl;

@@ -12,6 +12,7 @@
 #include <httplib.h>
 
 #include "api/json.h"
+#include "core/utf8.h"
 #include "server/connections.h"
 #include "server/file_descriptor.h"
 #include "server/file_writer.h"
@@ -132,7 +133,9 @@ bool receive(Upload& upload, const httplib::Request& request, const httplib::Con
   bool complete = false;
   if (request.is_multipart_form_data()) {
     complete = read(
-        [&](const httplib::FormData& part) { return upload.begin(part.name, file_name_of(part), part.content_type); },
+        [&](const httplib::FormData& part) {
+          return upload.begin(part.name, as_utf8(file_name_of(part)), part.content_type);
+        },
         write);
   } else {
     complete = upload.begin("model", {}, {}) && read(write);

@@ -4,6 +4,7 @@
 
 #include "api/json.h"
 #include "api/problem.h"
+#include "core/utf8.h"
 
 namespace orbis::server {
 namespace {
@@ -16,7 +17,7 @@ constexpr std::size_t longest_text = 8000; // stays below max_line even where ev
 
 [[noreturn]] void broken() { throw Error(ErrorCode::internal, "the job's process sent something unreadable"); }
 
-Json file_json(const InputFile& file) { return {{"name", file.name}, {"bytes", file.bytes}}; }
+Json file_json(const InputFile& file) { return {{"name", as_utf8(file.name)}, {"bytes", file.bytes}}; }
 
 InputFile input_file(const Json& json) {
   return {json.at("name").get<std::string>(), {}, json.at("bytes").get<std::uint64_t>()};

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/asset/uri.h"
+#include "core/utf8.h"
 
 namespace orbis::asset {
 namespace {
@@ -11,6 +12,13 @@ std::size_t append(Json& json, const char* array, Json item) {
   if (!json[array].is_array()) json[array] = Json::array();
   json[array].push_back(std::move(item));
   return json[array].size() - 1;
+}
+
+void list_once(Json& json, const char* list, std::string_view extension) {
+  for (std::size_t i = 0; i < array_size(json, list); ++i) {
+    if (json[list][i] == extension) return;
+  }
+  append(json, list, extension);
 }
 
 // A texture that only this extension can name.
@@ -24,12 +32,13 @@ ModelBuilder::ModelBuilder() : out_(empty_) {
   out_.json["scenes"] = Json::array({Json{{"nodes", Json::array()}}});
 }
 
-std::size_t ModelBuilder::add_mesh(std::string_view name) {
+std::size_t ModelBuilder::add_mesh(std::string_view name, const Vec3d& origin) {
   Json mesh = Json::object(), node = Json::object();
-  if (!name.empty()) mesh["name"] = node["name"] = name;
+  if (!name.empty()) mesh["name"] = node["name"] = as_utf8(name);
   mesh["primitives"] = Json::array();
   const std::size_t number = append(out_.json, "meshes", std::move(mesh));
   node["mesh"] = number;
+  if (origin != Vec3d()) node["translation"] = {origin.x, origin.y, origin.z};
   out_.json["scenes"][0]["nodes"].push_back(append(out_.json, "nodes", std::move(node)));
   return number;
 }
@@ -47,18 +56,27 @@ void ModelBuilder::add_primitive(std::size_t mesh, std::span<const std::uint32_t
 
 std::size_t ModelBuilder::add_material(Json material) { return append(out_.json, "materials", std::move(material)); }
 
-std::size_t ModelBuilder::add_texture(std::string_view name, std::span<const std::byte> image) {
+std::size_t ModelBuilder::sampler(bool repeats) {
+  const int wrap = repeats ? 10497 : 33071;
+  for (std::size_t i = 0; i < array_size(out_.json, "samplers"); ++i) {
+    if (out_.json["samplers"][i]["wrapS"] == wrap) return i;
+  }
+  return append(out_.json, "samplers",
+                Json{{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", wrap}, {"wrapT", wrap}});
+}
+
+void ModelBuilder::use_extension(std::string_view name) { list_once(out_.json, "extensionsUsed", name); }
+
+std::size_t ModelBuilder::add_texture(std::string_view name, std::span<const std::byte> image, bool repeats) {
   const std::string_view type = image_type(image);
   Json json{{"mimeType", type}, {"bufferView", out_.add_view(Bytes(image.begin(), image.end()))}};
-  if (!name.empty()) json["name"] = name;
+  if (!name.empty()) json["name"] = as_utf8(name);
   const std::size_t source = append(out_.json, "images", std::move(json));
-  if (array_size(out_.json, "samplers") == 0) {
-    append(out_.json, "samplers", Json{{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 10497}, {"wrapT", 10497}});
-  }
-  Json texture{{"sampler", 0}};
+  Json texture{{"sampler", sampler(repeats)}};
   if (type == "image/webp") {
     texture["extensions"][webp_extension]["source"] = source;
-    for (const auto* list : {"extensionsUsed", "extensionsRequired"}) out_.json[list] = Json::array({webp_extension});
+    list_once(out_.json, "extensionsUsed", webp_extension);
+    list_once(out_.json, "extensionsRequired", webp_extension);
   } else {
     texture["source"] = source;
   }
@@ -81,7 +99,7 @@ bool make_unit(Attribute& normals) {
 }
 
 std::optional<std::size_t> add_texture_file(ModelBuilder& model, const ModelFiles& files, std::string_view name,
-                                            std::vector<Asset::Note>& notes) {
+                                            std::vector<Asset::Note>& notes, bool repeats) {
   const Bytes* image = files.find(name, "");
   if (image == nullptr) {
     notes.push_back({"image-missing", "the image '" + shown(name) + "' did not come with the request", ""});
@@ -94,7 +112,7 @@ std::optional<std::size_t> add_texture_file(ModelBuilder& model, const ModelFile
          "the image '" + shown(name) + "' is neither PNG, JPEG nor WebP, which is what glTF holds; convert it", ""});
     return std::nullopt;
   }
-  return model.add_texture(name, *image);
+  return model.add_texture(name, *image, repeats);
 }
 
 } // namespace orbis::asset

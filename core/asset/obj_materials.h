@@ -1,8 +1,9 @@
-// Material libraries of OBJ files (MTL) as glTF materials.
+// The materials of an OBJ file as glTF's, from its libraries.
 #pragma once
 
 #include <map>
 #include <string>
+#include <utility>
 
 #include "core/asset/model_builder.h"
 #include "core/asset/model_files.h"
@@ -23,13 +24,16 @@ public:
 
 private:
   void read_library(std::string_view name);
-  [[nodiscard]] std::optional<std::size_t> texture(const std::string& name);
+  [[nodiscard]] std::optional<std::size_t> texture(const std::string& name, bool repeats);
+  // A texture info of read_mtl with the texture's number in place of its file; nothing where that did not come.
+  [[nodiscard]] std::optional<Json> with_index(const Json& info);
 
   ModelBuilder& model_;
   const ModelFiles& files_;
   std::vector<Asset::Note>& notes_;
-  std::map<std::string, Json, std::less<>> read_; // glTF materials by name; textures are file names yet
-  std::map<std::string, std::optional<std::size_t>, std::less<>> numbers_, textures_;
+  std::map<std::string, Json, std::less<>> read_; // read_mtl's materials by name
+  std::map<std::string, std::optional<std::size_t>, std::less<>> numbers_;
+  std::map<std::pair<std::string, bool>, std::optional<std::size_t>> textures_; // by file, and whether they repeat
 };
 
 } // namespace orbis::asset

@@ -81,7 +81,7 @@ PlyHeader read_ply_header(TextReader& text) {
       }
       properties.push_back(read_property(text));
     } else if (word == "comment" && text.word() == "TextureFile") {
-      header.texture = text.rest_of_line();
+      header.textures.emplace_back(text.rest_of_line());
     }
   }
   text.fail("the header has no end");

@@ -33,7 +33,7 @@ enum class PlyForm { text, little_endian, big_endian };
 struct PlyHeader {
   PlyForm form = PlyForm::text;
   std::vector<PlyElement> elements;
-  std::string texture; // MeshLab's "comment TextureFile …", or ""
+  std::vector<std::string> textures; // MeshLab's "comment TextureFile …"
 };
 
 // Reads up to "end_header"; `text` then stands before the data. Throws Error{malformed, unsupported_feature}.

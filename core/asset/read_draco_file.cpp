@@ -2,6 +2,7 @@
 
 #include "core/asset/draco_decoder.h"
 #include "core/asset/load_document.h"
+#include "core/asset/vertex_color.h"
 
 namespace orbis::asset {
 namespace {
@@ -43,6 +44,23 @@ std::optional<Attribute> named(const DracoMesh::Info& info, Counts& counts) {
       "_GENERIC_" + std::to_string(counts.generics++), type, info.normalized && type != ComponentType::f32, n, {}};
 }
 
+// Colours of 8 bits come from files of scans and pictures, PLY above all, and are sRGB as there.
+bool is_srgb(const Attribute& attribute) {
+  return attribute.name.starts_with("COLOR_") && attribute.type == ComponentType::u8;
+}
+
+Attribute linear(const Attribute& srgb) {
+  Attribute out = linear_colors(srgb.count(), srgb.components);
+  out.name = srgb.name;
+  for (std::size_t v = 0; v < srgb.count(); ++v) {
+    for (std::uint32_t c = 0; c < srgb.components; ++c) {
+      const bool is_alpha = c == 3;
+      out.set(v, c, is_alpha ? srgb.get(v, c) : linear_from_srgb(srgb.get(v, c)));
+    }
+  }
+  return out;
+}
+
 Primitive read_primitive(const DracoMesh& mesh, const Limits& limits, std::vector<Asset::Note>& notes) {
   Primitive out;
   out.indices = mesh.indices();
@@ -66,7 +84,7 @@ Primitive read_primitive(const DracoMesh& mesh, const Limits& limits, std::vecto
                                             std::to_string(max_decoded_bytes(limits)) + " bytes of vertex data");
     }
     attribute->data = mesh.values(info.id, attribute->type, info.components);
-    out.attributes.push_back(std::move(*attribute));
+    out.attributes.push_back(is_srgb(*attribute) ? linear(*attribute) : std::move(*attribute));
   }
   if (!counts.position) throw Error(ErrorCode::invalid_geometry, "the Draco mesh has no positions");
   return out;

@@ -7,7 +7,8 @@
 
 namespace orbis::asset {
 
-// Throws what DracoMesh throws, and Error{invalid_geometry} where it has no positions.
+// Colours of 8 bits are taken for sRGB and become linear, as glTF has them; others are linear already. Throws what
+// DracoMesh throws, and Error{invalid_geometry} where it has no positions.
 [[nodiscard]] Converted read_draco_file(std::span<const std::byte> bytes, const Limits& limits);
 
 } // namespace orbis::asset

@@ -1,10 +1,14 @@
 #include "core/asset/read_obj.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <unordered_map>
 
+#include "core/asset/extent.h"
 #include "core/asset/obj_materials.h"
 #include "core/asset/polygon.h"
 #include "core/asset/text_reader.h"
@@ -32,8 +36,14 @@ struct CornerHash {
 
 // The lists that faces refer to.
 struct Lists {
-  std::vector<Vec3f> positions, normals, colors; // colors: as many as positions, or fewer where the first had none
+  std::vector<Vec3d> positions;
+  std::vector<Vec3f> normals;
   std::vector<Vec2f> texcoords;
+  std::vector<std::optional<Vec3f>> colors; // of the positions, up to the last one that has a colour
+
+  [[nodiscard]] std::optional<Vec3f> color_of(std::uint32_t position) const {
+    return position < colors.size() ? colors[position] : std::nullopt;
+  }
 };
 
 // A primitive in the making: one material, and corners that all have, or all lack, texture coordinates and normals.
@@ -55,16 +65,28 @@ struct PartKey {
   friend auto operator<=>(const PartKey&, const PartKey&) = default;
 };
 
+// A primitive that waits for the end of the file: positions are measured from a point that all of them decide.
+struct FinishedPart {
+  PartKey key;
+  std::vector<Corner> vertices;
+  std::vector<std::uint32_t> indices;
+};
+
+struct Object {
+  std::string name;
+  std::vector<FinishedPart> parts;
+};
+
 Attribute floats(std::string name, std::uint32_t components, std::size_t count) {
   Attribute out{std::move(name), ComponentType::f32, false, components, {}};
   out.data.resize(count * components * sizeof(float));
   return out;
 }
 
-void set(Attribute& attribute, std::size_t v, const Vec3f& value) {
-  attribute.set(v, 0, double{value.x});
-  attribute.set(v, 1, double{value.y});
-  attribute.set(v, 2, double{value.z});
+void set(Attribute& attribute, std::size_t v, const Vec3d& value) {
+  attribute.set(v, 0, value.x);
+  attribute.set(v, 1, value.y);
+  attribute.set(v, 2, value.z);
 }
 
 class ObjReader {
@@ -75,6 +97,9 @@ public:
   Converted run() {
     while (text_.next_line()) read_line();
     finish_object();
+    origin_ = extent_.origin();
+    note_origin(origin_, notes_);
+    for (const Object& object : objects_) write(object);
     if (left_out_ > 0) {
       notes_.push_back({"elements-left-out",
                         std::to_string(left_out_) + " points, lines, curves or surfaces of the OBJ file were left out: "
@@ -113,34 +138,53 @@ private:
     const float x = next_float(), y = next_float();
     return {x, y, next_float()};
   }
+  // A double that becomes the float32 nearest to what the text says. The double nearest to it can lie midway between
+  // two floats, and then might become the other one.
+  double next_coordinate() {
+    const std::string_view word = text_.word();
+    const auto single = text_.number<float>(word);
+    const auto value = text_.number<double>(word);
+    return static_cast<float>(value) == single ? value : std::nextafter(value, double{single});
+  }
+  Vec3d next_position() {
+    const double x = next_coordinate(), y = next_coordinate();
+    return {x, y, next_coordinate()};
+  }
 
   // x y z, perhaps a weight, perhaps a colour: three, four, six or seven numbers.
   void read_position() {
     if (lists_.positions.size() >= limits_.max_vertices) too_many(limits_.max_vertices, "vertices");
-    lists_.positions.push_back(next_vector());
+    lists_.positions.push_back(next_position());
+    extent_.add(lists_.positions.back());
     std::array<float, 4> more{};
     std::size_t count = 0;
     while (count < more.size() && !text_.at_end_of_line()) more[count++] = next_float();
-    if (count >= 3 && lists_.colors.size() + 1 == lists_.positions.size()) {
-      lists_.colors.emplace_back(more[count - 3], more[count - 2], more[count - 1]);
-    }
+    if (count < 3) return;
+    lists_.colors.resize(lists_.positions.size());
+    lists_.colors.back() = Vec3f(more[count - 3], more[count - 2], more[count - 1]);
   }
 
   void read_face() {
     corners_.clear();
-    points_.clear();
     for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
       if (word == "\\" && text_.next_line()) continue; // the face goes on in the next line
       if (word.front() == '#') break;
       if (corners_.size() == max_corners) too_many(max_corners, "corners in a face");
       corners_.push_back(read_corner(word));
-      points_.push_back(lists_.positions[corners_.back().position]);
     }
     if (corners_.size() < 3) text_.fail("the face has fewer than three corners");
     Part& part = part_of_face();
-    for (const std::uint32_t corner : triangulate_polygon(points_)) part.add(corners_[corner]);
+    for (const std::uint32_t corner : triangulate_polygon(points_of_face())) part.add(corners_[corner]);
     triangles_ += corners_.size() - 2;
     if (triangles_ > limits_.max_triangles) too_many(limits_.max_triangles, "triangles");
+  }
+
+  std::span<const Vec3f> points_of_face() {
+    const Vec3d origin = extent_.origin(); // of what has been read: all that the face can name
+    points_.clear();
+    points_.reserve(corners_.size());
+    for (const Corner& corner : corners_) points_.emplace_back(lists_.positions[corner.position] - origin);
+    return points_;
   }
 
   // "7", "7/8", "7//9" or "7/8/9".
@@ -187,22 +231,30 @@ private:
 
   void finish_object() {
     if (order_.empty()) return;
-    const std::size_t mesh = model_.add_mesh(object_);
+    Object& object = objects_.emplace_back(Object{object_, {}});
+    object.parts.reserve(order_.size());
     for (const auto& part : order_) {
-      const std::vector<Attribute> attributes = attributes_of(part->first, part->second);
-      const auto material = part->first.material.empty() ? std::nullopt : materials_.find(part->first.material);
-      model_.add_primitive(mesh, part->second.indices, attributes, material);
+      object.parts.push_back({part->first, std::move(part->second.vertices), std::move(part->second.indices)});
     }
     order_.clear();
     parts_.clear();
   }
 
-  std::vector<Attribute> attributes_of(const PartKey& key, const Part& part) {
+  void write(const Object& object) {
+    const std::size_t mesh = model_.add_mesh(object.name, origin_);
+    for (const FinishedPart& part : object.parts) {
+      const std::vector<Attribute> attributes = attributes_of(part);
+      const auto material = part.key.material.empty() ? std::nullopt : materials_.find(part.key.material);
+      model_.add_primitive(mesh, part.indices, attributes, material);
+    }
+  }
+
+  std::vector<Attribute> attributes_of(const FinishedPart& part) {
     const std::size_t count = part.vertices.size();
     std::vector<Attribute> out{floats("POSITION", 3, count)};
-    for (std::size_t v = 0; v < count; ++v) set(out[0], v, lists_.positions[part.vertices[v].position]);
-    if (key.has_normals) add_normals(part, out);
-    if (key.has_texcoords) {
+    for (std::size_t v = 0; v < count; ++v) set(out[0], v, lists_.positions[part.vertices[v].position] - origin_);
+    if (part.key.has_normals) add_normals(part, out);
+    if (part.key.has_texcoords) {
       Attribute uv = floats("TEXCOORD_0", 2, count);
       for (std::size_t v = 0; v < count; ++v) {
         const Vec2f& value = lists_.texcoords[part.vertices[v].texcoord];
@@ -211,22 +263,29 @@ private:
       }
       out.push_back(std::move(uv));
     }
-    if (!lists_.colors.empty() && lists_.colors.size() == lists_.positions.size()) {
-      Attribute colors = linear_colors(count, 3);
-      for (std::size_t v = 0; v < count; ++v) {
-        const Vec3f& c = lists_.colors[part.vertices[v].position];
-        colors.set(v, 0, linear_from_srgb(double{c.x}));
-        colors.set(v, 1, linear_from_srgb(double{c.y}));
-        colors.set(v, 2, linear_from_srgb(double{c.z}));
-      }
-      out.push_back(std::move(colors));
-    }
+    add_colors(part, out);
     return out;
   }
 
-  void add_normals(const Part& part, std::vector<Attribute>& out) {
+  // A part without any colour goes without; in one with some, white changes nothing of the others.
+  void add_colors(const FinishedPart& part, std::vector<Attribute>& out) {
+    const bool has_color = std::ranges::any_of(
+        part.vertices, [&](const Corner& corner) { return lists_.color_of(corner.position).has_value(); });
+    if (!has_color) return;
+    Attribute colors = linear_colors(part.vertices.size(), 3);
+    for (std::size_t v = 0; v < part.vertices.size(); ++v) {
+      const Vec3f c = lists_.color_of(part.vertices[v].position).value_or(Vec3f(1, 1, 1));
+      colors.set(v, 0, linear_from_srgb(double{c.x}));
+      colors.set(v, 1, linear_from_srgb(double{c.y}));
+      colors.set(v, 2, linear_from_srgb(double{c.z}));
+    }
+    out.push_back(std::move(colors));
+  }
+
+  void add_normals(const FinishedPart& part, std::vector<Attribute>& out) {
     Attribute normals = floats("NORMAL", 3, part.vertices.size());
-    for (std::size_t v = 0; v < part.vertices.size(); ++v) set(normals, v, lists_.normals[part.vertices[v].normal]);
+    for (std::size_t v = 0; v < part.vertices.size(); ++v)
+      set(normals, v, Vec3d(lists_.normals[part.vertices[v].normal]));
     if (make_unit(normals)) {
       out.push_back(std::move(normals));
     } else {
@@ -245,6 +304,9 @@ private:
   std::vector<Asset::Note> notes_;
   ObjMaterials materials_;
   Lists lists_;
+  Extent extent_;
+  Vec3d origin_;
+  std::vector<Object> objects_;
   std::string object_, material_;
   std::map<PartKey, Part> parts_;                        // of the object at hand
   std::vector<std::map<PartKey, Part>::iterator> order_; // as they came

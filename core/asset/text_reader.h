@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "core/error.h"
+#include "core/utf8.h"
 
 namespace orbis::asset {
 
@@ -18,7 +19,7 @@ class TextReader {
 public:
   // `what` begins the messages: "the OBJ file".
   TextReader(std::span<const std::byte> bytes, std::string_view what)
-      : rest_(reinterpret_cast<const char*>(bytes.data()), bytes.size()), what_(what) {}
+      : rest_(without_byte_order_mark({reinterpret_cast<const char*>(bytes.data()), bytes.size()})), what_(what) {}
 
   // Goes to the next line; false where there is none. Lines end with "\n", "\r\n" or "\r".
   bool next_line() {

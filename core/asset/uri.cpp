@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 
+#include "core/utf8.h"
+
 namespace orbis::asset {
 namespace {
 
@@ -75,7 +77,8 @@ std::string percent_decoded(std::string_view uri) {
 }
 
 const Bytes* find_attachment(const Attachments& attachments, std::string_view uri) {
-  for (std::string name : {percent_decoded(uri), std::string(uri)}) {
+  const std::string decoded = percent_decoded(uri);
+  for (std::string name : {decoded, as_utf8(decoded), std::string(uri)}) {
     while (name.starts_with("./")) name.erase(0, 2);
     auto found = attachments.find(name);
     const bool is_relative = name.find(':') == std::string::npos;
@@ -86,15 +89,16 @@ const Bytes* find_attachment(const Attachments& attachments, std::string_view ur
 }
 
 std::string shown(std::string_view uri) {
-  constexpr std::size_t longest = 80;
-  std::string out(uri.substr(0, longest));
+  constexpr std::size_t longest = 80, longest_character = 4;
+  std::string out = as_utf8(uri.substr(0, longest + longest_character));
   for (char& c : out) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
   }
-  // A cut inside a multi-byte character would not be UTF-8 any more.
-  if (uri.size() > longest) {
-    while (!out.empty() && (static_cast<unsigned char>(out.back()) & 0xc0) == 0x80) out.pop_back();
-    if (!out.empty() && static_cast<unsigned char>(out.back()) >= 0x80) out.pop_back();
+  if (out.size() > longest) {
+    // A cut inside a multi-byte character would not be UTF-8 any more.
+    std::size_t end = longest;
+    while ((static_cast<unsigned char>(out[end]) & 0xc0) == 0x80) --end;
+    out.resize(end);
     out += "…";
   }
   return out;

@@ -23,10 +23,11 @@ struct DataUri {
 
 // The file that a URI means, among those that came with the request: by its whole decoded name (a leading "./" does not
 // count), else, unless it is absolute ("https:…"), by the last part of that name, since an upload form sends no
-// folders; else by its name as it is written. Null where it did not come.
+// folders; else by its name as it is written. Bytes are compared first; a name in Latin-1 also means the file that was
+// sent under the same name in UTF-8. Null where it did not come.
 [[nodiscard]] const Bytes* find_attachment(const Attachments& attachments, std::string_view uri);
 
-// A URI as messages show it: short, without control characters.
+// A URI as messages show it: short, in UTF-8, without control characters.
 [[nodiscard]] std::string shown(std::string_view uri);
 
 } // namespace orbis::asset

@@ -22,7 +22,8 @@ using Archive = std::unique_ptr<zip_t, Closer>;
 
 struct Member {
   std::uint64_t index = 0;
-  std::string name;
+  std::string name;     // in UTF-8; where the archive does not say how it is encoded, libzip takes it for code page 437
+  std::string raw_name; // its bytes in the archive
   std::uint64_t bytes = 0;
 };
 
@@ -67,8 +68,9 @@ Member checked_member(zip_t* archive, std::uint64_t index) {
   if (zip_stat_index(archive, index, 0, &stat) != 0 || (stat.valid & needed) != needed) {
     refuse("is damaged: its entry " + std::to_string(index) + " cannot be read");
   }
-  const std::string name = stat.name;
-  if (!stays_inside(name)) {
+  const char* raw = zip_get_name(archive, index, ZIP_FL_ENC_RAW);
+  const std::string name = stat.name, raw_name = raw ? raw : name;
+  if (!stays_inside(name) || !stays_inside(raw_name)) {
     refuse("has a member " + quoted(name) + " whose name leads out of the archive; names are relative, with '/'");
   }
   if ((stat.valid & ZIP_STAT_ENCRYPTION_METHOD) && stat.encryption_method != ZIP_EM_NONE) {
@@ -83,7 +85,7 @@ Member checked_member(zip_t* archive, std::uint64_t index) {
                " times its size",
            ErrorCode::too_large);
   }
-  return {index, name, stat.size};
+  return {index, name, raw_name, stat.size};
 }
 
 std::vector<Member> checked_members(zip_t* archive, const Limits& limits) {
@@ -97,7 +99,8 @@ std::vector<Member> checked_members(zip_t* archive, const Limits& limits) {
   for (std::uint64_t i = 0; i < count; ++i) {
     Member member = checked_member(archive, i);
     if (member.name.back() == '/' || is_litter(member.name)) continue;
-    if (member.bytes > limits.max_bytes || (total += member.bytes) > limits.max_bytes) {
+    const std::uint64_t copies = member.raw_name == member.name ? 1 : 2; // one under each name
+    if (member.bytes > limits.max_bytes || (total += copies * member.bytes) > limits.max_bytes) {
       refuse("holds more than the limit of " + std::to_string(limits.max_bytes) + " bytes", ErrorCode::too_large);
     }
     members.push_back(std::move(member));
@@ -148,6 +151,8 @@ const Member& the_model(const std::vector<Member>& members) {
   return *model;
 }
 
+std::string folder_of(const std::string& name) { return name.substr(0, name.rfind('/') + 1); }
+
 // "scene/textures/a.png" from "scene/" -> "textures/a.png"; "b.png" from "scene/" -> "../b.png".
 std::string path_from(std::string_view folder, std::string_view name) {
   std::string up;
@@ -165,10 +170,14 @@ ZippedModel unzip_model(std::span<const std::byte> bytes, const Limits& limits) 
   const Archive archive = open_archive(bytes);
   const std::vector<Member> members = checked_members(archive.get(), limits);
   const Member& model = the_model(members);
-  const std::string folder = model.name.substr(0, model.name.rfind('/') + 1);
+  const std::string folder = folder_of(model.name), raw_folder = folder_of(model.raw_name);
   ZippedModel out{model.name, contents(archive.get(), model), {}};
   for (const Member& member : members) {
-    if (&member != &model) out.files.insert_or_assign(path_from(folder, member.name), contents(archive.get(), member));
+    if (&member == &model) continue;
+    Bytes& file = out.files[path_from(folder, member.name)];
+    file = contents(archive.get(), member);
+    // An OBJ names its files by the same bytes, whatever they mean.
+    if (member.raw_name != member.name) out.files[path_from(raw_folder, member.raw_name)] = file;
   }
   return out;
 }

@@ -11,7 +11,8 @@ namespace orbis::asset {
 struct ZippedModel {
   std::string name; // of the model, in the archive
   Bytes model;
-  Attachments files; // the others, by their path from the model's folder
+  // The others, by their path from the model's folder; by that in the archive's own bytes too where it is no UTF-8.
+  Attachments files;
 };
 
 // Takes an archive apart in memory. Exactly one member must have the name of a model (.glb, .gltf, .drc, .obj, .ply,

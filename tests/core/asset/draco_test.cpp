@@ -60,10 +60,10 @@ TEST_CASE("a raw Draco mesh reads to the bit, with glTF's names") {
       attribute("NORMAL", ComponentType::f32, 3,
                 bytes_of({1.f, 0.f, -0.0f, 0.f, -1.f, 0.f, 0.6f, 0.8f, 0.f, 0.f, 0.f, 1.f})),
       attribute("TEXCOORD_0", ComponentType::f32, 2, bytes_of({0.f, 1.f, 0.25f, -0.0f, 0.1f, 0.2f, 0.3f, 0.4f})),
-      attribute("COLOR_0", ComponentType::u8, 3,
-                bytes_of({std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{3}, std::uint8_t{4}, std::uint8_t{5},
-                          std::uint8_t{6}, std::uint8_t{7}, std::uint8_t{8}, std::uint8_t{9}, std::uint8_t{255},
-                          std::uint8_t{0}, std::uint8_t{128}}),
+      attribute("COLOR_0", ComponentType::u16, 3,
+                bytes_of({std::uint16_t{1}, std::uint16_t{2}, std::uint16_t{3}, std::uint16_t{4}, std::uint16_t{5},
+                          std::uint16_t{6}, std::uint16_t{7}, std::uint16_t{8}, std::uint16_t{9}, std::uint16_t{65535},
+                          std::uint16_t{0}, std::uint16_t{128}}),
                 true),
       attribute("_GENERIC_0", ComponentType::i16, 1,
                 bytes_of({std::int16_t{-5}, std::int16_t{5}, std::int16_t{32767}, std::int16_t{-32768}}))};
@@ -82,6 +82,21 @@ TEST_CASE("a raw Draco mesh reads to the bit, with glTF's names") {
     CHECK(found->normalized == wanted.normalized);
     CHECK(found->data == wanted.data);
   }
+}
+
+TEST_CASE("colours of 8 bits are sRGB in a raw Draco file as in a PLY, and linear in glTF; alpha is no colour") {
+  test::Bytes rgba;
+  for (int v = 0; v < 4; ++v) {
+    for (const int c : {255, 128, 0, 51}) rgba.push_back(static_cast<std::byte>(c));
+  }
+  const auto colors = attribute("COLOR_0", ComponentType::u8, 4, rgba, true);
+  const Asset asset = read_asset(encode_draco(triangles, std::vector{positions(), colors}), {}, Limits{});
+  const Attribute* found = asset.primitives.at(0).find("COLOR_0");
+  REQUIRE(found);
+  CHECK(found->get(3, 0) == 1.0);
+  CHECK(found->get(3, 1) == doctest::Approx(0.2159).epsilon(0.001));
+  CHECK(found->get(3, 2) == 0.0);
+  CHECK(found->get(3, 3) == doctest::Approx(0.2).epsilon(0.001));
 }
 
 TEST_CASE("a raw Draco mesh becomes a document with one scene, node, mesh and material") {

@@ -160,6 +160,25 @@ TEST_CASE("OBJ: colours behind positions are sRGB, and linear in glTF") {
   CHECK(color->get(2, 2) == doctest::Approx(0.2140).epsilon(0.001));
 }
 
+TEST_CASE("OBJ: vertices without a colour take none from the others") {
+  // Once, no vertex after one without a colour had any.
+  const Asset asset = read("v 0 0 1\nv 0 0 0\nv 1 0 0 1 0 0.5\nv 0 1 0 0 0 0\nf 2 3 4\n"
+                           "o plain\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf 5 6 7\n");
+  const Attribute* color = asset.primitives.at(0).find("COLOR_0");
+  REQUIRE(color);
+  CHECK(vector_at(*color, 0) == Vec3d(1, 1, 1));
+  CHECK(color->get(1, 2) == doctest::Approx(0.2140).epsilon(0.001));
+  CHECK(vector_at(*color, 2) == Vec3d(0, 0, 0));
+  CHECK_FALSE(asset.primitives.at(1).find("COLOR_0"));
+}
+
+TEST_CASE("OBJ and MTL: a byte order mark hides nothing of the first line") {
+  const Asset asset = read("\xEF\xBB\xBFmtllib m.mtl\nusemtl red\n" + std::string(obj),
+                           {{"m.mtl", bytes_of("\xEF\xBB\xBFnewmtl red\nKd 1 0 0\n")}});
+  CHECK(asset.primitives.at(0).material.has_value());
+  CHECK(asset.notes.empty());
+}
+
 TEST_CASE("OBJ: a library that was forgotten is named; a model that came alone goes without") {
   const std::string text = "mtllib m.mtl\nusemtl a\n" + std::string(obj);
   CHECK(has_note(read(text), "materials-missing"));
