@@ -4,8 +4,8 @@
 #include <bit>
 #include <cstring>
 #include <map>
-#include <unordered_map>
 
+#include "core/asset/corner_list.h"
 #include "core/asset/vertex_color.h"
 
 namespace orbis::asset {
@@ -34,17 +34,7 @@ struct CornerHash {
   }
 };
 
-struct SplitPart {
-  std::unordered_map<Corner, std::uint32_t, CornerHash> number_of;
-  std::vector<Corner> vertices;
-  std::vector<std::uint32_t> indices;
-
-  void add(const Corner& corner) {
-    const auto [place, is_new] = number_of.try_emplace(corner, static_cast<std::uint32_t>(vertices.size()));
-    if (is_new) vertices.push_back(corner);
-    indices.push_back(place->second);
-  }
-};
+using SplitPart = CornerList<Corner, CornerHash>;
 
 std::map<std::uint32_t, SplitPart> split(const PlyFaces& faces) {
   std::map<std::uint32_t, SplitPart> parts;

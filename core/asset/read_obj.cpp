@@ -6,8 +6,8 @@
 #include <map>
 #include <optional>
 #include <tuple>
-#include <unordered_map>
 
+#include "core/asset/corner_list.h"
 #include "core/asset/extent.h"
 #include "core/asset/obj_materials.h"
 #include "core/asset/polygon.h"
@@ -47,17 +47,7 @@ struct Lists {
 };
 
 // A primitive in the making: one material, and corners that all have, or all lack, texture coordinates and normals.
-struct Part {
-  std::unordered_map<Corner, std::uint32_t, CornerHash> number_of;
-  std::vector<Corner> vertices;
-  std::vector<std::uint32_t> indices;
-
-  void add(const Corner& corner) {
-    const auto [place, is_new] = number_of.try_emplace(corner, static_cast<std::uint32_t>(vertices.size()));
-    if (is_new) vertices.push_back(corner);
-    indices.push_back(place->second);
-  }
-};
+using Part = CornerList<Corner, CornerHash>;
 
 struct PartKey {
   std::string material;

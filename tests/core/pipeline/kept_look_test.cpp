@@ -9,18 +9,16 @@
 #include "core/asset/glb.h"
 #include "core/asset/image_codec.h"
 #include "core/pipeline.h"
+#include "support/flat_png.h"
 #include "support/gltf_builder.h"
 #include "support/shapes.h"
 
 using namespace orbis;
+using test::flat_png;
 using test::GltfBuilder;
 using test::Json;
 
 namespace {
-
-test::Bytes flat_png(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
-  return asset::encode_png(texture::Image{2, 2, 3, {r, g, b, r, g, b, r, g, b, r, g, b}});
-}
 
 std::size_t add_texture(GltfBuilder& b, const test::Bytes& image, const char* mime_type) {
   const auto source = b.append("images", Json{{"bufferView", b.add_view(image)}, {"mimeType", mime_type}});

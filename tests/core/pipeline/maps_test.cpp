@@ -14,19 +14,17 @@
 #include "core/pipeline.h"
 #include "core/texture/color.h"
 #include "core/texture/sampler.h"
+#include "support/flat_png.h"
 #include "support/glb_of_mesh.h"
 #include "support/gltf_builder.h"
 #include "support/shapes.h"
 
 using namespace orbis;
+using test::flat_png;
 using test::GltfBuilder;
 using test::Json;
 
 namespace {
-
-test::Bytes flat_png(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
-  return asset::encode_png(texture::Image{2, 2, 3, {r, g, b, r, g, b, r, g, b, r, g, b}});
-}
 
 // A sphere with normals, texture coordinates by its directions, vertex colours (half the light), and a material with
 // every texture, each of one colour of its own.
