@@ -18,7 +18,7 @@
 namespace orbis {
 namespace {
 
-constexpr int most_turns = 16;
+constexpr int most_turns = 16, tries_a_turn = 2;
 // Radians. The first turn moves a border by about a hundred texels of a usual atlas, the last to another side of the
 // sphere: what is crowded into one place, or drawn out into needles, gets away from the borders.
 constexpr double first_turn = 0.02;
@@ -69,7 +69,7 @@ public:
   // is called. Throws Error{not_certified} if no turn helps.
   void next(Progress& progress, mesh::ThreadPool& pool) {
     for (;;) {
-      if (++turns_ >= most_turns)
+      if (++tries_ >= tries_a_turn * most_turns)
         throw Error(ErrorCode::not_certified, "the map could not be delivered without a fold: " + failure_);
       try {
         attempt(progress, pool);
@@ -91,11 +91,12 @@ public:
             component_.input_triangles,
             component_.first_vertex,
             component_.first_triangle,
-            page_};
+            page_,
+            tries_ % tries_a_turn == 0 ? texture::Finish::newton : texture::Finish::sweeps};
   }
   [[nodiscard]] const texture::FlatCharts& charts() const { return charts_; }
   [[nodiscard]] const std::vector<sphere::GridPoint>& sphere() const { return sphere_; }
-  [[nodiscard]] int turns() const { return turns_; }
+  [[nodiscard]] int turns() const { return tries_ / tries_a_turn; }
   [[nodiscard]] const Component& component() const { return component_; }
 
 private:
@@ -104,22 +105,22 @@ private:
   std::span<const Vec3d> points_;
   std::span<const mesh::Triangle> corners_;
   std::uint32_t page_;
-  int turns_ = -1;
+  int tries_ = -1; // the first of each turn with the best charts, the second with those that are easier to round
   std::string failure_;
   std::vector<sphere::GridPoint> sphere_;
   texture::FlatCharts charts_;
 
   void attempt(Progress& progress, mesh::ThreadPool& pool) {
     std::vector<Vec3d> rotated(points_.begin(), points_.end());
-    const double angle = angle_of(turns_);
-    for (std::size_t v = 0; turns_ > 0 && v < rotated.size(); ++v) rotated[v] = turned(points_[v], angle);
+    const double angle = angle_of(turns());
+    for (std::size_t v = 0; turns() > 0 && v < rotated.size(); ++v) rotated[v] = turned(points_[v], angle);
     sphere::Snapped snapped = sphere::snap(rotated, mesh_.triangles);
     if (snapped.folded > 0)
       throw Error(ErrorCode::not_certified,
                   std::to_string(snapped.folded) + " triangles are too small for the numbers of the result");
     sphere_ = std::move(snapped.points);
     // What did not do at first may be the chart without a cut, which no turn changes.
-    const auto kinds = turns_ == 0 ? texture::ChartKinds::all : texture::ChartKinds::faces;
+    const auto kinds = turns() == 0 ? texture::ChartKinds::all : texture::ChartKinds::faces;
     charts_ = texture::lay_flat(atlas_component(), kinds, progress, pool);
   }
 };

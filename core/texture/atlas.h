@@ -73,6 +73,10 @@ struct CutMesh {
 // Texels covered by triangles / all texels, over all pages.
 [[nodiscard]] double utilisation(const CutMesh& mesh);
 
+// How charts are laid flat in the end (flatten.h): by Newton's method, where it pays, or by sweeps alone, which leave
+// texels less even and fewer triangles so thin that rounding folds them.
+enum class Finish : std::uint8_t { newton, sweeps };
+
 // What an atlas is made for: one component of a surface, mapped to a sphere of its own.
 struct AtlasComponent {
   std::span<const mesh::Triangle> triangles; // welded, certified: every triangle positively oriented on the sphere
@@ -83,6 +87,7 @@ struct AtlasComponent {
   std::uint32_t first_vertex = 0;            // what the component's vertex 0 and triangle 0 are called in the result
   std::uint32_t first_triangle = 0;
   std::uint32_t page = 0; // numbers from 0, without gaps over all components
+  Finish finish = Finish::newton;
 };
 
 // The whole atlas of one component whose triangles are all delivered: cut, laid flat and packed (flat_charts.h,

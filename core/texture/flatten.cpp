@@ -133,7 +133,6 @@ bool flatten_chart(PlaneMesh& mesh, FlatStart start) {
   if (!untangle(mesh)) return false;
   settle_in_rectangle(mesh, first_sweeps);
   lower(mesh, sweeps_a_cycle);
-  if (mesh.triangles.size() <= most_to_finish) lower_by_newton(mesh);
   return true;
 }
 
@@ -171,13 +170,22 @@ Spread spread_over(std::span<const ChartMesh> charts) {
   return out;
 }
 
-// To this part of their mean: triangles that are next to nothing would be crushed between the others.
-void raise_areas(PlaneMesh& mesh, double part) {
+// The areas of slivers as they are, not rounded off; but none below a part of their mean: triangles that are next to
+// nothing would be crushed between the others.
+void take_own_areas(ChartMesh& chart) {
   double total = 0;
-  for (const PlaneReference& r : mesh.references) total += r.area;
-  const double least = part * total / static_cast<double>(mesh.references.size());
-  for (PlaneReference& r : mesh.references)
-    if (!r.closes_hole) r.area = std::max(r.area, least);
+  for (const double area : chart.areas) total += area;
+  const double least = least_area_evened * total / static_cast<double>(chart.areas.size());
+  for (std::size_t t = 0; t < chart.areas.size(); ++t) {
+    PlaneReference& r = chart.mesh.references[t];
+    if (!r.closes_hole) r.area = std::max(chart.areas[t], least);
+  }
+}
+
+void finish_small_charts(std::vector<ChartMesh>& charts, mesh::ThreadPool& pool) {
+  pool.for_blocks(charts.size(), 1, [&](std::size_t c, std::size_t) {
+    if (charts[c].mesh.triangles.size() <= most_to_finish) lower_by_newton(charts[c].mesh);
+  });
 }
 
 // Weighs areas more and more in the charts that get too few texels, until they get enough or it helps no more.
@@ -189,13 +197,13 @@ void even_out(std::vector<ChartMesh>& charts, mesh::ThreadPool& pool) {
     before.reserve(spread.sparse.size());
     for (const std::size_t c : spread.sparse) before.push_back(charts[c].mesh);
     pool.for_blocks(spread.sparse.size(), 1, [&](std::size_t i, std::size_t) {
-      PlaneMesh& mesh = charts[spread.sparse[i]].mesh;
-      mesh.exponent = exponent;
-      raise_areas(mesh, least_area_evened);
-      if (mesh.triangles.size() <= most_for_newton)
-        lower_by_newton(mesh);
+      ChartMesh& chart = charts[spread.sparse[i]];
+      chart.mesh.exponent = exponent;
+      take_own_areas(chart);
+      if (chart.mesh.triangles.size() <= most_for_newton)
+        lower_by_newton(chart.mesh);
       else
-        lower(mesh, heavier_sweeps_a_cycle);
+        lower(chart.mesh, heavier_sweeps_a_cycle);
     });
     Spread now = spread_over(charts);
     if (now.sparsest < spread.sparsest)
@@ -208,14 +216,17 @@ void even_out(std::vector<ChartMesh>& charts, mesh::ThreadPool& pool) {
 } // namespace
 
 void flatten(FlatCharts& charts, std::span<const Vec3d> positions, std::size_t delivered, FlatStart start,
-             mesh::ThreadPool& pool) {
+             Finish finish, mesh::ThreadPool& pool) {
   std::vector<ChartMesh> meshes = split(charts, positions, delivered);
   std::vector<std::uint8_t> is_flat(meshes.size()); // no exception may leave a pool's loop
   pool.for_blocks(meshes.size(), 1,
                   [&](std::size_t c, std::size_t) { is_flat[c] = flatten_chart(meshes[c].mesh, start) ? 1 : 0; });
   if (std::ranges::find(is_flat, 0) != is_flat.end())
     throw Error(ErrorCode::not_certified, "a triangle at a border of the cube's faces has no room in its chart");
-  even_out(meshes, pool);
+  if (finish == Finish::newton) {
+    finish_small_charts(meshes, pool);
+    even_out(meshes, pool);
+  }
   charts.sizes.clear();
   for (const ChartMesh& chart : meshes) {
     const FlatCharts::Size size = size_of(chart.mesh);

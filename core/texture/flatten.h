@@ -18,8 +18,8 @@ enum class FlatStart : std::uint8_t { places, outlines };
 // position: of each place, in space. Triangles from `delivered` on (by parent) only close holes: they are kept from
 // folding, and otherwise shrink. No triangle folds on the way. Throws Error{not_certified} where one cannot be laid out
 // at all, because all its corners are on one side: turning the sphere a little then helps. Charts are shared out to the
-// pool's threads; the same on any number of them.
+// pool's threads; the same on any number of them. finish: atlas.h.
 void flatten(FlatCharts& charts, std::span<const Vec3d> positions, std::size_t delivered, FlatStart start,
-             mesh::ThreadPool& pool);
+             Finish finish, mesh::ThreadPool& pool);
 
 } // namespace orbis::texture

@@ -112,7 +112,7 @@ double cost_of(const FlatCharts& charts, std::span<const Vec3d> positions) {
 
 Laid lay(FlatCharts charts, FlatStart start, const AtlasComponent& component, mesh::ThreadPool& pool) {
   const std::vector<Vec3d> positions = positions_of(charts, component);
-  flatten(charts, positions, component.delivered, start, pool);
+  flatten(charts, positions, component.delivered, start, component.finish, pool);
   crop(charts, component.delivered);
   charts.is_shown = shown_charts(charts.mesh);
   const double cost = cost_of(charts, positions);
