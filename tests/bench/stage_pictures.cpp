@@ -58,7 +58,7 @@ public:
   }
 
   [[nodiscard]] texture::Shape shape(std::span<const Vec3d> at) const {
-    texture::Shape out{mesh_, {}, {}};
+    texture::Shape out{mesh_, {}, {}, {}};
     for (const mesh::Triangle& t : level_.triangles) {
       const Vec3d n = cross(at[t[1]] - at[t[0]], at[t[2]] - at[t[0]]);
       const double length = norm(n);
@@ -99,15 +99,15 @@ mesh::TriangleMesh mesh_of(const sphere::LevelMesh& level, const mesh::TriangleM
   return out;
 }
 
-void draw(const mesh::TriangleMesh& level, std::uint32_t column, const texture::Image& page, texture::Canvas& canvas) {
+void draw(const mesh::TriangleMesh& level, std::uint32_t column, texture::Canvas& canvas) {
   NoProgress progress;
   std::vector<Vec3d> points = sphere::embed_isometric(level, Quality::high, 1, progress).points;
   points = sphere::canonically_turned(level, std::move(points));
   std::vector<Vec3d> positions;
   for (const Vec3f& p : level.positions) positions.emplace_back(p);
   const Drawing drawing(level);
-  canvas.draw(drawing.shape(positions), std::span(&page, 1), {column * cell, 0, cell, cell});
-  canvas.draw(drawing.shape(points), std::span(&page, 1), {column * cell, cell, cell, cell});
+  canvas.draw(drawing.shape(positions), {column * cell, 0, cell, cell});
+  canvas.draw(drawing.shape(points), {column * cell, cell, cell, cell});
   std::printf("%zu vertices\n", level.positions.size());
 }
 
@@ -124,12 +124,13 @@ int main(int count, char** values) {
   sphere::Hierarchy hierarchy = sphere::build_hierarchy(surface, pool, progress);
   sphere::LevelMesh level(hierarchy);
   const texture::Image page = tiles();
-  texture::Canvas canvas(cell * (static_cast<std::uint32_t>(wanted_vertices.size()) + 1), 2 * cell);
+  texture::Canvas canvas(cell * (static_cast<std::uint32_t>(wanted_vertices.size()) + 1), 2 * cell, std::span(&page, 1),
+                         pool);
   std::uint32_t column = 0;
   for (std::size_t round = hierarchy.rounds() + 1; round-- > 0;) {
     level.build(hierarchy, mesh::unit_positions(surface), 0.05, pool);
     const bool wanted = column < wanted_vertices.size() && level.vertices().size() >= wanted_vertices[column];
-    if (wanted || round == 0) draw(mesh_of(level, surface), column++, page, canvas);
+    if (wanted || round == 0) draw(mesh_of(level, surface), column++, canvas);
     if (round == 0) break;
     for (std::uint32_t i = hierarchy.round_first[round - 1]; i < hierarchy.round_first[round]; ++i) hierarchy.undo(i);
     level.add_round(hierarchy, round - 1);
