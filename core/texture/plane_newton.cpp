@@ -105,25 +105,28 @@ public:
     find_pattern();
   }
 
-  // Leaves the mesh as it is where there is no way down.
-  void step() {
+  // Leaves the mesh as it is where there is no way down. Returns its energy.
+  double step() {
+    const double energy = energy_of(mesh_);
     assemble();
     solver_.factorize(hessian_);
-    if (solver_.info() != Eigen::Success) return;
+    if (solver_.info() != Eigen::Success) return energy;
     const Vector s = -solver_.solve(gradient_);
     const double slope = gradient_.dot(s);
-    if (!s.allFinite() || !(slope < 0)) return;
+    if (!s.allFinite() || !(slope < 0)) return energy;
     const std::vector<FlatPoint> before = mesh_.points;
-    const double energy = energy_of(mesh_);
     double t = step_to_fold(s);
     for (int i = 0; i < most_halvings; ++i, t *= 0.5) {
       for (std::size_t v = 0; v < before.size(); ++v) {
         const FlatPoint d = along(s, v);
         mesh_.points[v] = {before[v].x + t * d.x, before[v].y + t * d.y};
       }
-      if (is_positive() && energy_of(mesh_) < energy + sufficient * t * slope) return;
+      if (!is_positive()) continue;
+      const double now = energy_of(mesh_);
+      if (now < energy + sufficient * t * slope) return now;
     }
     mesh_.points = before;
+    return energy;
   }
 
 private:
@@ -234,8 +237,7 @@ void lower_by_newton(PlaneMesh& mesh) {
   double energy = energy_of(mesh);
   for (int i = mesh.triangles.size() <= small ? rounds_if_small : rounds; i > 0; --i) {
     relax(mesh, sweeps_a_round);
-    newton.step();
-    const double now = energy_of(mesh);
+    const double now = newton.step();
     if (now > (1 - worthwhile) * energy) return;
     energy = now;
   }
