@@ -76,14 +76,18 @@ Vec3d NormalMap::at(const Uv& uv, std::uint32_t page_number) const {
   return (read(x0, y0) * (1 - s) + read(x1, y0) * s) * (1 - t) + (read(x0, y1) * (1 - s) + read(x1, y1) * s) * t;
 }
 
-NormalAt NormalMap::on(const texture::CutMesh& level) const {
-  return [this, &level](std::uint32_t t, const std::array<double, 3>& w) {
-    Uv uv{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      uv[0] += w[k] * level.vertices[level.triangles[t][k]].uv.x;
-      uv[1] += w[k] * level.vertices[level.triangles[t][k]].uv.y;
+NormalsAt NormalMap::on(const texture::CutMesh& level) const {
+  return [this, &level](std::span<const Spot> spots, std::span<Vec3f> out) {
+    for (std::size_t i = 0; i < spots.size(); ++i) {
+      const std::array<double, 3> w{1.0 - spots[i].b - spots[i].c, spots[i].b, spots[i].c};
+      Uv uv{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec2f& corner = level.vertices[level.triangles[spots[i].triangle][k]].uv;
+        uv[0] += w[k] * corner.x;
+        uv[1] += w[k] * corner.y;
+      }
+      out[i] = Vec3f(at(uv, level.page_of(spots[i].triangle)));
     }
-    return at(uv, level.page_of(t));
   };
 }
 

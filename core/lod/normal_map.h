@@ -20,7 +20,7 @@ public:
   // The bilinear read at a place in the atlas; not normalized.
   [[nodiscard]] Vec3d at(const Uv& uv, std::uint32_t page) const;
   // The normals of a level that is lit through the map. Keeps references to both.
-  [[nodiscard]] NormalAt on(const texture::CutMesh& level) const;
+  [[nodiscard]] NormalsAt on(const texture::CutMesh& level) const;
 
 private:
   using Texel = std::array<std::int8_t, 3>;

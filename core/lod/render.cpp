@@ -30,12 +30,6 @@ View view_of(std::size_t number) {
   return {right, up, towards, normalized(towards * 0.8 + right * -0.4 + up * 0.45)};
 }
 
-struct Fragment {
-  std::uint32_t triangle = none;
-  float depth = -std::numeric_limits<float>::infinity();
-  float b = 0, c = 0; // weights of the second and the third corner
-};
-
 // What is seen of a surface, some rows at a time: those stay in a processor's cache, the whole picture does not.
 class Viewfinder {
 public:
@@ -45,25 +39,32 @@ public:
   Viewfinder(std::span<const Vec3d> positions, std::span<const mesh::Triangle> triangles, const View& view,
              std::uint32_t size)
       : triangles_(triangles), size_(size), seen_(seen_from(positions, view, size)),
-        bands_(texture::all_triangles(triangles.size()), size, rows, [this](std::uint32_t t) { return corners(t); }) {}
+        bands_(texture::all_triangles(triangles.size()), size, rows, [this](std::uint32_t t) { return corners(t); }),
+        depth_(std::size_t{rows} * size), shown_(depth_.size()) {}
 
   [[nodiscard]] std::size_t bands() const { return bands_.count(); }
 
-  // The fragments of a band's rows, one after the other.
-  [[nodiscard]] const std::vector<Fragment>& band(std::size_t number) {
+  // The triangles at the subpixels of a band, row by row; `none` where there is none.
+  [[nodiscard]] std::span<const std::uint32_t> band(std::size_t number) {
     const std::uint32_t height = bands_.rows(number);
-    fragments_.assign(std::size_t{height} * size_, {});
+    std::fill(depth_.begin(), depth_.end(), -std::numeric_limits<float>::infinity());
+    std::fill(shown_.begin(), shown_.end(), none);
     const auto corners_of = [this](std::uint32_t t) { return corners(t); };
     bands_.for_each(number, corners_of, [&](std::uint32_t t, const std::array<texture::RasterPoint, 3>& p) {
-      const auto& [a, b, c] = triangles_[t];
-      const double za = seen_[a].z, zb = seen_[b].z, zc = seen_[c].z;
-      texture::rasterize(p, size_, height, [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>& w) {
-        Fragment& f = fragments_[std::size_t{y} * size_ + x];
-        const auto depth = static_cast<float>(w[0] * za + w[1] * zb + w[2] * zc);
-        if (depth > f.depth) f = {t, depth, static_cast<float>(w[1]), static_cast<float>(w[2])};
-      });
+      texture::rasterize_rows(p, size_, height, [&](const texture::CoveredRow& row) { draw(t, row); });
     });
-    return fragments_;
+    return std::span(shown_).first(std::size_t{height} * size_);
+  }
+
+  // The point of a triangle that is seen in the middle of a subpixel.
+  [[nodiscard]] Spot spot(std::uint32_t t, std::size_t x, std::size_t y) const {
+    const auto& [a, b, c] = triangles_[t];
+    const Vec3d ab = seen_[b] - seen_[a], ac = seen_[c] - seen_[a];
+    const double dx = static_cast<double>(x) + 0.5 - seen_[a].x, dy = static_cast<double>(y) + 0.5 - seen_[a].y;
+    const double area = ab.x * ac.y - ac.x * ab.y, scale = area != 0 ? 1 / area : 0;
+    const double at_b = std::clamp((dx * ac.y - ac.x * dy) * scale, 0.0, 1.0);
+    return {t, static_cast<float>(at_b),
+            static_cast<float>(std::clamp((ab.x * dy - dx * ab.y) * scale, 0.0, 1 - at_b))};
   }
 
 private:
@@ -79,47 +80,91 @@ private:
     for (std::size_t k = 0; k < 3; ++k) out[k] = {seen_[triangles_[t][k]].x, seen_[triangles_[t][k]].y};
     return out;
   }
+  void draw(std::uint32_t t, const texture::CoveredRow& row) {
+    const auto depth_at = [&](std::uint32_t x) {
+      const std::array<double, 3> w = row.weights(x);
+      return w[0] * seen_[triangles_[t][0]].z + w[1] * seen_[triangles_[t][1]].z + w[2] * seen_[triangles_[t][2]].z;
+    };
+    const double first = depth_at(row.begin);
+    const double step = row.end - row.begin > 1 ? (depth_at(row.end - 1) - first) / (row.end - 1 - row.begin) : 0;
+    float* const depth = &depth_[std::size_t{row.y} * size_ + row.begin];
+    std::uint32_t* const shown = &shown_[std::size_t{row.y} * size_ + row.begin];
+    for (std::uint32_t i = 0; i < row.end - row.begin; ++i) {
+      const auto here = static_cast<float>(first + i * step);
+      if (here <= depth[i]) continue;
+      depth[i] = here;
+      shown[i] = t;
+    }
+  }
 
   std::span<const mesh::Triangle> triangles_;
   std::uint32_t size_;
   std::vector<Vec3d> seen_;
   texture::Bands bands_;
-  std::vector<Fragment> fragments_;
+  std::vector<float> depth_;
+  std::vector<std::uint32_t> shown_;
 };
 
-float lit(const Vec3d& normal, const View& view) {
-  const double cosine = dot(normal, view.light), squared_length = squared_norm(normal);
-  return static_cast<float>(cosine > 0 ? 0.1 + 0.9 * cosine / std::sqrt(squared_length) : 0.1);
-}
+// The brightness of a pixel is the mean of its subpixels', if all of them show a triangle.
+class Shader {
+public:
+  Shader(Viewfinder& finder, const NormalsAt& normals_at, const View& view, Picture& picture)
+      : finder_(finder), normals_at_(normals_at), light_(view.light), picture_(picture) {}
 
-// normal_at(triangle, weights) for every subpixel that shows a triangle; a pixel is their mean if all do.
-template <class NormalAt>
-Picture shade(Viewfinder& finder, const View& view, std::uint32_t size, const NormalAt& normal_at) {
-  Picture picture{size, std::vector<float>(std::size_t{size} * size, background)};
-  const std::size_t width = std::size_t{size} * subpixels;
-  for (std::size_t band = 0; band < finder.bands(); ++band) {
-    const std::vector<Fragment>& fragments = finder.band(band);
-    float* const light = &picture.light[band * (Viewfinder::rows / subpixels) * size];
-    for (std::size_t pixel = 0; pixel < fragments.size() / (subpixels * subpixels); ++pixel) {
+  void shade(std::size_t band) {
+    const std::span<const std::uint32_t> shown = finder_.band(band);
+    const std::size_t size = picture_.size, width = size * subpixels,
+                      first = band * (Viewfinder::rows / subpixels) * size;
+    pixels_.clear();
+    spots_.clear();
+    for (std::size_t pixel = 0; pixel < shown.size() / samples; ++pixel) {
       const std::size_t x = pixel % size * subpixels, y = pixel / size * subpixels;
-      float sum = 0;
+      const auto triangle = [&](std::size_t i) { return shown[(y + i / subpixels) * width + x + i % subpixels]; };
       bool is_covered = true;
-      for (std::size_t i = 0; i < subpixels * subpixels && is_covered; ++i) {
-        const Fragment& f = fragments[(y + i / subpixels) * width + x + i % subpixels];
-        is_covered = f.triangle != none;
-        if (is_covered) sum += lit(normal_at(f.triangle, std::array<double, 3>{1.0 - f.b - f.c, f.b, f.c}), view);
-      }
-      if (is_covered) light[pixel] = sum / (subpixels * subpixels);
+      for (std::size_t i = 0; i < samples; ++i) is_covered = is_covered && triangle(i) != none;
+      if (!is_covered) continue;
+      pixels_.push_back(first + pixel);
+      for (std::size_t i = 0; i < samples; ++i)
+        spots_.push_back(finder_.spot(triangle(i), x + i % subpixels, band * Viewfinder::rows + y + i / subpixels));
+    }
+    light();
+  }
+
+private:
+  static constexpr std::size_t samples = std::size_t{subpixels} * subpixels; // a pixel
+
+  void light() {
+    normals_.resize(spots_.size());
+    normals_at_(spots_, normals_);
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+      float sum = 0;
+      for (std::size_t k = 0; k < samples; ++k) sum += lit(normals_[i * samples + k]);
+      picture_.light[pixels_[i]] = sum / samples;
     }
   }
-  return picture;
-}
+  [[nodiscard]] float lit(const Vec3f& normal) const {
+    const float cosine = dot(normal, light_), squared_length = squared_norm(normal);
+    return cosine > 0 ? 0.1F + 0.9F * cosine / std::sqrt(squared_length) : 0.1F;
+  }
+
+  Viewfinder& finder_;
+  const NormalsAt& normals_at_;
+  Vec3f light_;
+  Picture& picture_;
+  std::vector<std::size_t> pixels_; // of the band, those that are covered,
+  std::vector<Spot> spots_;         // and their subpixels
+  std::vector<Vec3f> normals_;
+};
 
 } // namespace
 
-NormalAt interpolated(std::span<const Vec3d> normals, std::span<const mesh::Triangle> triangles) {
-  return [=](std::uint32_t t, const std::array<double, 3>& w) {
-    return normals[triangles[t][0]] * w[0] + normals[triangles[t][1]] * w[1] + normals[triangles[t][2]] * w[2];
+NormalsAt interpolated(std::span<const Vec3d> normals, std::span<const mesh::Triangle> triangles) {
+  return [=](std::span<const Spot> spots, std::span<Vec3f> out) {
+    for (std::size_t i = 0; i < spots.size(); ++i) {
+      const auto& [a, b, c] = triangles[spots[i].triangle];
+      const double wb = spots[i].b, wc = spots[i].c;
+      out[i] = Vec3f(normals[a] * (1 - wb - wc) + normals[b] * wb + normals[c] * wc);
+    }
   };
 }
 
@@ -141,7 +186,10 @@ Picture Photographer::of(const Sitter& sitter, std::size_t view) const {
   positions.reserve(sitter.positions.size());
   for (const Vec3f& p : sitter.positions) positions.push_back((Vec3d(p) - centre_) * scale_);
   Viewfinder finder(positions, sitter.triangles, from, subpixels * size_);
-  return shade(finder, from, size_, sitter.normal_at);
+  Picture picture{size_, std::vector<float>(std::size_t{size_} * size_, background)};
+  Shader shader(finder, sitter.normals_at, from, picture);
+  for (std::size_t band = 0; band < finder.bands(); ++band) shader.shade(band);
+  return picture;
 }
 
 double Photographer::psnr(const Sitter& level) const {

@@ -1,7 +1,6 @@
 // Pictures of a level beside those of the full surface, and how much they differ.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -20,18 +19,24 @@ struct Picture {
   std::vector<float> light;
 };
 
-// The normal that a renderer lights a point of a triangle with, at any length; called from several threads at once.
-using NormalAt = std::function<Vec3d(std::uint32_t triangle, const std::array<double, 3>& weights)>;
+// A point of a triangle, by the weights of its second and third corner.
+struct Spot {
+  std::uint32_t triangle = 0;
+  float b = 0, c = 0;
+};
+
+// The normals that a renderer lights spots with, at any length; called from several threads at once.
+using NormalsAt = std::function<void(std::span<const Spot>, std::span<Vec3f>)>;
 
 // What is drawn.
 struct Sitter {
   std::span<const Vec3f> positions;
   std::span<const mesh::Triangle> triangles;
-  NormalAt normal_at;
+  NormalsAt normals_at;
 };
 
 // Normals that are given at the vertices, interpolated. Keeps references to both.
-[[nodiscard]] NormalAt interpolated(std::span<const Vec3d> normals, std::span<const mesh::Triangle> triangles);
+[[nodiscard]] NormalsAt interpolated(std::span<const Vec3d> normals, std::span<const mesh::Triangle> triangles);
 
 class Photographer {
 public:

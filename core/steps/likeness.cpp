@@ -1,7 +1,7 @@
 #include "core/steps/likeness.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
@@ -17,7 +17,6 @@ namespace orbis {
 namespace {
 
 using asset::TextureSlot;
-using Weights = std::array<double, 3>;
 
 constexpr std::uint32_t picture_size = 512; // pixels
 constexpr double same_pictures = 99;        // dB
@@ -50,6 +49,10 @@ private:
   std::map<std::uint32_t, std::optional<Decoded>> decoded_; // nodes stay where they are
 };
 
+using Float4 [[gnu::vector_size(16)]] = float; // one addition, one multiplication for all four
+
+float squared_length(const Float4& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
+
 // A delivered mesh as a renderer sees it.
 class Shown {
 public:
@@ -65,55 +68,70 @@ public:
       const OutputVertex o = delivery.of_cut_vertex[v];
       const Attributes& a = attributes[o.primitive];
       positions_.emplace_back(asset::vector_at(*a.position, o.vertex));
-      vertices_[v].primitive = o.primitive;
-      if (a.normal != nullptr) vertices_[v].normal = asset::vector_at(*a.normal, o.vertex);
+      const Vec3d normal = a.normal != nullptr ? Vec3d(asset::vector_at(*a.normal, o.vertex)) : Vec3d{};
+      vertices_[v].normal = float4(normal, 0);
       if (a.tangent == nullptr) continue;
-      vertices_[v].tangent = asset::vector_at(*a.tangent, o.vertex);
-      vertices_[v].bitangent = cross(vertices_[v].normal, vertices_[v].tangent) * a.tangent->get(o.vertex, 3);
+      const Vec3d tangent(asset::vector_at(*a.tangent, o.vertex));
+      vertices_[v].tangent_u = float4(tangent, mesh.vertices[v].uv.x);
+      vertices_[v].bitangent_v = float4(cross(normal, tangent) * a.tangent->get(o.vertex, 3), mesh.vertices[v].uv.y);
     }
+    primitive_.reserve(mesh.triangles.size());
+    for (const mesh::Triangle& t : mesh.triangles) primitive_.push_back(delivery.of_cut_vertex[t[0]].primitive);
   }
 
   // maps: by primitive, null for none. flat: by primitive, whether its triangles' own normals are shown.
   [[nodiscard]] lod::Sitter with(std::vector<const texture::Sampler*> maps, std::vector<bool> flat) const {
-    const auto normal_at = [this, maps = std::move(maps), flat = std::move(flat)](std::uint32_t t, const Weights& w) {
-      const std::uint32_t primitive = vertices_[mesh_.triangles[t][0]].primitive;
-      if (flat[primitive]) return face_normal(t);
-      const Vec3d n = blend(t, w, &Vertex::normal);
-      return maps[primitive] == nullptr ? n : mapped(t, w, n, *maps[primitive]);
+    const auto normals_at = [this, maps = std::move(maps), flat = std::move(flat)](std::span<const lod::Spot> spots,
+                                                                                   std::span<Vec3f> out) {
+      for (std::size_t i = 0; i < spots.size(); ++i) {
+        const std::uint32_t primitive = primitive_[spots[i].triangle];
+        if (flat[primitive])
+          out[i] = face_normal(spots[i].triangle);
+        else
+          out[i] = maps[primitive] == nullptr ? interpolated(spots[i]) : mapped(spots[i], *maps[primitive]);
+      }
     };
-    return {positions_, mesh_.triangles, normal_at};
+    return {positions_, mesh_.triangles, normals_at};
   }
 
 private:
   struct Vertex {
-    std::uint32_t primitive = 0;
-    Vec3d normal, tangent, bitangent;
+    Float4 normal{}, tangent_u{}, bitangent_v{}; // the last two with a coordinate in the atlas behind them
   };
 
-  [[nodiscard]] Vec3d blend(std::uint32_t t, const Weights& w, Vec3d Vertex::*of) const {
-    const auto& [a, b, c] = mesh_.triangles[t];
-    return vertices_[a].*of * w[0] + vertices_[b].*of * w[1] + vertices_[c].*of * w[2];
+  static Float4 float4(const Vec3d& v, float last) {
+    return Float4{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), last};
   }
-  [[nodiscard]] Vec3d face_normal(std::uint32_t t) const {
+  [[nodiscard]] Float4 blend(const lod::Spot& spot, Float4 Vertex::*of) const {
+    const auto& [a, b, c] = mesh_.triangles[spot.triangle];
+    return vertices_[a].*of * (1 - spot.b - spot.c) + vertices_[b].*of * spot.b + vertices_[c].*of * spot.c;
+  }
+  [[nodiscard]] Vec3f interpolated(const lod::Spot& spot) const {
+    const Float4 n = blend(spot, &Vertex::normal);
+    return {n[0], n[1], n[2]};
+  }
+  [[nodiscard]] Vec3f face_normal(std::uint32_t t) const {
     const auto& [a, b, c] = mesh_.triangles[t];
-    return cross(Vec3d(positions_[b]) - Vec3d(positions_[a]), Vec3d(positions_[c]) - Vec3d(positions_[a]));
+    const Vec3d n = cross(Vec3d(positions_[b]) - Vec3d(positions_[a]), Vec3d(positions_[c]) - Vec3d(positions_[a]));
+    const double length = norm(n); // of tiny triangles too small for float
+    return Vec3f(length > 0 ? n * (1 / length) : n);
   }
   // n ~ x T + y B + z N, each brought back to unit length.
-  [[nodiscard]] Vec3d mapped(std::uint32_t t, const Weights& w, const Vec3d& n, const texture::Sampler& map) const {
-    double x = 0, y = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      x += w[k] * mesh_.vertices[mesh_.triangles[t][k]].uv.x;
-      y += w[k] * mesh_.vertices[mesh_.triangles[t][k]].uv.y;
-    }
-    const texture::Page& page = mesh_.pages[mesh_.page_of(t)];
-    const texture::Light c = map.sample(x * page.width, y * page.height, 0);
-    return normalized(blend(t, w, &Vertex::tangent)) * (2.0 * c[0] - 1) +
-           normalized(blend(t, w, &Vertex::bitangent)) * (2.0 * c[1] - 1) + normalized(n) * (2.0 * c[2] - 1);
+  [[nodiscard]] Vec3f mapped(const lod::Spot& spot, const texture::Sampler& map) const {
+    const Float4 t = blend(spot, &Vertex::tangent_u), b = blend(spot, &Vertex::bitangent_v),
+                 n = blend(spot, &Vertex::normal);
+    const texture::Page& page = mesh_.pages[mesh_.page_of(spot.triangle)];
+    const texture::Light c = map.sample(double{t[3]} * page.width, double{b[3]} * page.height, 0);
+    const Float4 sum = t * ((2 * c[0] - 1) / std::sqrt(squared_length(t))) +
+                       b * ((2 * c[1] - 1) / std::sqrt(squared_length(b))) +
+                       n * ((2 * c[2] - 1) / std::sqrt(squared_length(n)));
+    return {sum[0], sum[1], sum[2]};
   }
 
   const texture::CutMesh& mesh_;
   std::vector<Vec3f> positions_;
   std::vector<Vertex> vertices_;
+  std::vector<std::uint32_t> primitive_; // by triangle
 };
 
 } // namespace

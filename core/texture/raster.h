@@ -25,11 +25,24 @@ inline std::int64_t to_raster(double texels) {
   return whole - (static_cast<double>(whole) > fixed ? 1 : 0);
 }
 
-// Calls visit(x, y, weights) for each texel of the width x height grid whose centre lies in the triangle; weights are
-// the barycentric coordinates of the centre. A centre on an edge belongs to the triangle on one side of it only.
-// Orientation does not matter. |coordinates| <= 2^14.
+// The texels of a row that a triangle covers, from `begin` to before `end`, and its barycentric weights there.
+struct CoveredRow {
+  std::uint32_t y = 0, begin = 0, end = 0;
+  std::array<std::int64_t, 3> at_zero{}, step{}; // the edge functions at column 0, and what they lose by a column
+  double scale = 0;                              // 1 / their sum
+
+  // Of the centre of the texel in column x.
+  [[nodiscard]] std::array<double, 3> weights(std::uint32_t x) const {
+    std::array<double, 3> out{};
+    for (std::size_t k = 0; k < 3; ++k) out[k] = scale * static_cast<double>(at_zero[k] - std::int64_t{x} * step[k]);
+    return out;
+  }
+};
+
+// Calls visit(row) for each row of the width x height grid in which the triangle covers the centre of a texel. A centre
+// on an edge belongs to the triangle on one side of it only. Orientation does not matter. |coordinates| <= 2^14.
 template <class Visit>
-void rasterize(const std::array<RasterPoint, 3>& corners, std::uint32_t width, std::uint32_t height, Visit visit) {
+void rasterize_rows(const std::array<RasterPoint, 3>& corners, std::uint32_t width, std::uint32_t height, Visit visit) {
   constexpr std::int64_t one = std::int64_t{1} << raster_bits, half = one / 2;
   std::array<std::int64_t, 3> px{}, py{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -38,11 +51,8 @@ void rasterize(const std::array<RasterPoint, 3>& corners, std::uint32_t width, s
   }
   std::int64_t area = (px[1] - px[0]) * (py[2] - py[0]) - (px[2] - px[0]) * (py[1] - py[0]);
   if (area == 0) return;
-  std::array<std::size_t, 3> order{0, 1, 2};
-  if (area < 0) {
-    area = -area;
-    std::swap(order[1], order[2]);
-  }
+  const std::int64_t sign = area < 0 ? -1 : 1;
+  area *= sign;
 
   // The first centre that is not below `low`, and one past the last that is not above `high`.
   const auto first = [](std::int64_t low) { return std::max<std::int64_t>((low - half + one - 1) >> raster_bits, 0); };
@@ -52,49 +62,58 @@ void rasterize(const std::array<RasterPoint, 3>& corners, std::uint32_t width, s
   const auto [x_low, x_high] = std::minmax({px[0], px[1], px[2]});
   const auto [y_low, y_high] = std::minmax({py[0], py[1], py[2]});
   const std::int64_t x_first = first(x_low), x_end = end(x_high, width);
-  if (x_first >= x_end) return;
+  const std::int64_t y_first = first(y_low), y_end = end(y_high, height);
+  if (x_first >= x_end || y_first >= y_end) return;
 
-  // Edge k goes from corner order[k+1] to order[k+2]; its function is the weight of order[k], times the area:
-  // E(x, y) = dx (y - y0) - dy (x - x0), positive inside.
-  struct Edge {
-    std::int64_t dx, dy, x0, y0, bias;
-  };
-  std::array<Edge, 3> edges{};
+  // Edge k goes from corner k + 1 to k + 2, or back, such that the triangle lies on its left; its function is the
+  // weight of corner k, times the area: E(x, y) = dx (y - y0) - dy (x - x0), positive inside.
+  CoveredRow row;
+  row.scale = 1 / static_cast<double>(area);
+  std::array<std::int64_t, 3> down{}, bias{};
+  std::array<double, 3> inverse{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t from = order[(k + 1) % 3], to = order[(k + 2) % 3];
-    const std::int64_t dx = px[to] - px[from], dy = py[to] - py[from];
+    const std::size_t from = (k + 1) % 3, to = (k + 2) % 3;
+    const std::int64_t dx = sign * (px[to] - px[from]), dy = sign * (py[to] - py[from]);
     const bool owns_its_points = dy > 0 || (dy == 0 && dx > 0); // and its reverse, in the neighbour, does not
-    edges[k] = {dx, dy, px[from], py[from], owns_its_points ? 0 : 1};
+    bias[k] = owns_its_points ? 0 : 1;
+    down[k] = dx << raster_bits;
+    row.step[k] = dy << raster_bits;
+    inverse[k] = dy != 0 ? 1 / static_cast<double>(row.step[k]) : 0;
+    row.at_zero[k] = dx * ((y_first << raster_bits) + half - py[from]) - dy * (half - px[from]);
   }
 
-  // In a wide box each edge says by a division where its row of texels begins or ends; in a narrow one it is cheaper to
-  // ask at every texel.
-  constexpr std::int64_t narrow = 8;
-  const bool divide = x_end - x_first > narrow;
-  const double scale = 1 / static_cast<double>(area);
-  for (std::int64_t y = first(y_low), y_end = end(y_high, height); y < y_end; ++y) {
+  for (std::int64_t y = y_first; y < y_end; ++y) {
     std::int64_t from = x_first, to = x_end;
-    std::array<std::int64_t, 3> at_zero{}; // E at the centre of column 0
     for (std::size_t k = 0; k < 3; ++k) {
-      const Edge& e = edges[k];
-      at_zero[k] = e.dx * ((y << raster_bits) + half - e.y0) - e.dy * (half - e.x0);
-      if (!divide) continue;
-      // at_zero - bias - x dy one >= 0
-      const std::int64_t slack = at_zero[k] - e.bias, step = e.dy << raster_bits;
-      const auto floor_of = [](std::int64_t n, std::int64_t d) { return n >= 0 ? n / d : -((-n + d - 1) / d); };
-      if (step > 0) to = std::min(to, floor_of(slack, step) + 1);
-      if (step < 0) from = std::max(from, -floor_of(slack, -step));
-      if (step == 0 && slack < 0) to = from;
+      // Columns with slack - x step >= 0: a quotient says which, to the column beside; the integers decide.
+      const std::int64_t slack = row.at_zero[k] - bias[k], step = row.step[k];
+      const double quotient = static_cast<double>(slack) * inverse[k];
+      const std::int64_t x =
+          static_cast<std::int64_t>(std::clamp(quotient, static_cast<double>(x_first - 1), static_cast<double>(x_end)));
+      const auto is_inside = [&](std::int64_t column) { return slack - column * step >= 0; };
+      if (step > 0)
+        to = std::min(to, is_inside(x + 1) ? x + 2 : is_inside(x) ? x + 1 : x);
+      else if (step < 0)
+        from = std::max(from, is_inside(x - 1) ? x - 1 : is_inside(x) ? x : x + 1);
+      else if (slack < 0)
+        to = from;
     }
-    for (std::int64_t x = from; x < to; ++x) {
-      const auto outside = [&](std::size_t k) { return at_zero[k] - edges[k].bias < x * (edges[k].dy << raster_bits); };
-      if (!divide && (outside(0) || outside(1) || outside(2))) continue;
-      std::array<double, 3> weights{};
-      for (std::size_t k = 0; k < 3; ++k)
-        weights[order[k]] = scale * static_cast<double>(at_zero[k] - x * (edges[k].dy << raster_bits));
-      visit(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), weights);
+    if (from < to) {
+      row.y = static_cast<std::uint32_t>(y);
+      row.begin = static_cast<std::uint32_t>(from);
+      row.end = static_cast<std::uint32_t>(to);
+      visit(row);
     }
+    for (std::size_t k = 0; k < 3; ++k) row.at_zero[k] += down[k];
   }
+}
+
+// The same texel by texel: visit(x, y, weights).
+template <class Visit>
+void rasterize(const std::array<RasterPoint, 3>& corners, std::uint32_t width, std::uint32_t height, Visit visit) {
+  rasterize_rows(corners, width, height, [&](const CoveredRow& row) {
+    for (std::uint32_t x = row.begin; x < row.end; ++x) visit(x, row.y, row.weights(x));
+  });
 }
 
 } // namespace orbis::texture

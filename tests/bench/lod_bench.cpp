@@ -78,14 +78,18 @@ public:
   [[nodiscard]] std::span<const Vec3f> positions() const { return positions_; }
   [[nodiscard]] std::span<const mesh::Triangle> triangles() const { return triangles_; }
   [[nodiscard]] lod::Sitter sitter() const {
-    return {positions_, triangles_, [this](std::uint32_t t, const std::array<double, 3>& w) {
-              double u = 0, v = 0;
-              for (std::size_t k = 0; k < 3; ++k) {
-                u += w[k] * uv_[triangles_[t][k]][0];
-                v += w[k] * uv_[triangles_[t][k]][1];
+    return {positions_, triangles_, [this](std::span<const lod::Spot> spots, std::span<Vec3f> out) {
+              for (std::size_t i = 0; i < spots.size(); ++i) {
+                const mesh::Triangle& corners = triangles_[spots[i].triangle];
+                const std::array<double, 3> w{1.0 - spots[i].b - spots[i].c, spots[i].b, spots[i].c};
+                double u = 0, v = 0;
+                for (std::size_t k = 0; k < 3; ++k) {
+                  u += w[k] * uv_[corners[k]][0];
+                  v += w[k] * uv_[corners[k]][1];
+                }
+                const texture::Light n = sampler_.sample(u * image_.width, v * image_.height, 0);
+                out[i] = {2 * n[0] - 1, 2 * n[1] - 1, 2 * n[2] - 1};
               }
-              const texture::Light n = sampler_.sample(u * image_.width, v * image_.height, 0);
-              return Vec3d{2.0 * n[0] - 1, 2.0 * n[1] - 1, 2.0 * n[2] - 1};
             }};
   }
 
