@@ -50,6 +50,21 @@ Sums measure(mesh::ThreadPool& threads, const TriangleTree& tree, std::span<cons
   return sums;
 }
 
+// The largest distance of the points from the tree's surface, or `least` where all are nearer than that.
+double farthest(mesh::ThreadPool& threads, const TriangleTree& tree, std::span<const Vec3d> points, double least) {
+  std::vector<double> of_block((points.size() + grain - 1) / grain, least * least);
+  threads.for_blocks(points.size(), grain, [&](std::size_t begin, std::size_t end) {
+    double& most = of_block[begin / grain];
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!tree.is_within(points[i], most))
+        most = std::max(most, tree.squared_distance(points[i], std::numeric_limits<double>::infinity()));
+    }
+  });
+  double most = least * least;
+  for (const double block : of_block) most = std::max(most, block);
+  return most > least * least ? std::sqrt(most) : least;
+}
+
 std::vector<Vec3d> points_on(std::span<const Vec3d> positions, std::span<const mesh::Triangle> triangles) {
   std::vector<Vec3d> out;
   for (const Sample& s : spread_samples(positions, triangles, sample_count)) out.push_back(s.on(positions, triangles));
@@ -62,8 +77,8 @@ Distances measure_both(mesh::ThreadPool& threads, std::span<const Vec3d> positio
   const Sums to_full = measure(threads, full_tree, points_on(positions, triangles));
   const TriangleTree own(positions, triangles);
   const Sums from_full = measure(threads, own, points_on(full_positions, full_triangles));
-  const Sums from_vertices = measure(threads, own, full_positions);
-  return {to_full.sum, from_full.sum, std::max({to_full.largest, from_full.largest, from_vertices.largest})};
+  const double of_samples = std::max(to_full.largest, from_full.largest);
+  return {to_full.sum, from_full.sum, farthest(threads, own, full_positions, of_samples)};
 }
 
 } // namespace

@@ -77,7 +77,13 @@ std::uint32_t TriangleTree::build(std::uint32_t first, std::uint32_t last) {
   return node;
 }
 
-double TriangleTree::squared_distance(const Vec3d& p, double bound) const {
+double TriangleTree::squared_distance(const Vec3d& p, double bound) const { return search(p, bound, -1); }
+
+bool TriangleTree::is_within(const Vec3d& p, double bound) const {
+  return search(p, std::numeric_limits<double>::infinity(), bound) <= bound;
+}
+
+double TriangleTree::search(const Vec3d& p, double bound, double enough) const {
   struct Waiting {
     std::uint32_t node;
     double distance;
@@ -85,7 +91,7 @@ double TriangleTree::squared_distance(const Vec3d& p, double bound) const {
   std::array<Waiting, deepest> stack{Waiting{0, nodes_[0].box.squared_distance(p)}};
   std::size_t waiting = 1;
   double best = bound;
-  while (waiting > 0) {
+  while (waiting > 0 && best > enough) {
     const auto [i, distance] = stack[--waiting];
     if (distance >= best) continue;
     const Node& node = nodes_[i];

@@ -22,6 +22,8 @@ public:
 
   // The squared distance of p from the nearest triangle, or `bound` if none is nearer than that.
   [[nodiscard]] double squared_distance(const Vec3d& p, double bound) const;
+  // Whether some triangle is at most as far as `bound`, squared: cheaper than to find the nearest.
+  [[nodiscard]] bool is_within(const Vec3d& p, double bound) const;
 
 private:
   struct Box {
@@ -35,6 +37,9 @@ private:
   };
 
   std::uint32_t build(std::uint32_t first, std::uint32_t last);
+  // The squared distance of p from the nearest triangle, or from one that is at most as far as `enough`; `bound` if
+  // none is nearer than that.
+  [[nodiscard]] double search(const Vec3d& p, double bound, double enough) const;
 
   std::vector<std::array<Vec3d, 3>> corners_; // in the order of the leaves
   std::vector<Node> nodes_;

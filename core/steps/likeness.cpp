@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/asset/image_codec.h"
+#include "core/float4.h"
 #include "core/lod/render.h"
 #include "core/mesh/thread_pool.h"
 #include "core/texture/sampler.h"
@@ -48,10 +49,6 @@ private:
   std::span<const asset::NewImage> encoded_;
   std::map<std::uint32_t, std::optional<Decoded>> decoded_; // nodes stay where they are
 };
-
-using Float4 [[gnu::vector_size(16)]] = float; // one addition, one multiplication for all four
-
-float squared_length(const Float4& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
 
 // A delivered mesh as a renderer sees it.
 class Shown {
@@ -99,9 +96,6 @@ private:
     Float4 normal{}, tangent_u{}, bitangent_v{}; // the last two with a coordinate in the atlas behind them
   };
 
-  static Float4 float4(const Vec3d& v, float last) {
-    return Float4{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), last};
-  }
   [[nodiscard]] Float4 blend(const lod::Spot& spot, Float4 Vertex::*of) const {
     const auto& [a, b, c] = mesh_.triangles[spot.triangle];
     return vertices_[a].*of * (1 - spot.b - spot.c) + vertices_[b].*of * spot.b + vertices_[c].*of * spot.c;
@@ -122,9 +116,8 @@ private:
                  n = blend(spot, &Vertex::normal);
     const texture::Page& page = mesh_.pages[mesh_.page_of(spot.triangle)];
     const texture::Light c = map.sample(double{t[3]} * page.width, double{b[3]} * page.height, 0);
-    const Float4 sum = t * ((2 * c[0] - 1) / std::sqrt(squared_length(t))) +
-                       b * ((2 * c[1] - 1) / std::sqrt(squared_length(b))) +
-                       n * ((2 * c[2] - 1) / std::sqrt(squared_length(n)));
+    const Float4 sum =
+        t * ((2 * c[0] - 1) / norm3(t)) + b * ((2 * c[1] - 1) / norm3(b)) + n * ((2 * c[2] - 1) / norm3(n));
     return {sum[0], sum[1], sum[2]};
   }
 

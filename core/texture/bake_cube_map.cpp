@@ -140,6 +140,13 @@ struct SphereTriangle {
     return sphere[0] * w[0] + sphere[1] * w[1] + sphere[2] * w[2];
   }
 
+  // Whether the three directions lie within a few degrees: then one footprint does for all of it.
+  [[nodiscard]] bool is_small() const {
+    constexpr double few = 0.1; // radians
+    const auto is_short = [](const Vec3d& edge) { return squared_norm(edge) < few * few; };
+    return is_short(sphere[1] - sphere[0]) && is_short(sphere[2] - sphere[1]) && is_short(sphere[0] - sphere[2]);
+  }
+
   // Radians across a texel around d, in the direction in which there are most.
   [[nodiscard]] double angle(const Vec3d& d) const {
     return std::sqrt(std::max(squared_norm(cross(d, along_x)), squared_norm(cross(d, along_y)))) / squared_norm(d);
@@ -151,17 +158,25 @@ public:
   SurroundingsShader(const CutMesh& mesh, const Surroundings& surroundings, Image& image)
       : mesh_(mesh), surroundings_(surroundings), image_(image) {}
 
-  void triangle(std::uint32_t t, const TriangleInPage& place) { triangle_ = {mesh_, t, place}; }
+  void triangle(std::uint32_t t, const TriangleInPage& place) {
+    triangle_ = {mesh_, t, place};
+    is_small_ = triangle_.is_small();
+    if (is_small_) footprint_ = footprint_at(triangle_.at({1.0 / 3, 1.0 / 3, 1.0 / 3}));
+  }
 
   void texel(std::uint32_t x, std::uint32_t y, const std::array<double, 3>& weights) {
-    store(mean(triangle_.at(weights)), image_, x, y);
+    const Vec3d d = triangle_.at(weights);
+    store(mean(d, is_small_ ? footprint_ : footprint_at(d)), image_, x, y);
   }
 
 private:
+  [[nodiscard]] Footprint footprint_at(const Vec3d& d) const {
+    return footprint_of(surroundings_.texels_across(surroundings_.place(d), triangle_.angle(d)));
+  }
+
   // Over the texel around d.
-  [[nodiscard]] Light mean(const Vec3d& d) const {
+  [[nodiscard]] Light mean(const Vec3d& d, const Footprint& footprint) const {
     const auto place = surroundings_.place(d);
-    const Footprint footprint = footprint_of(surroundings_.texels_across(place, triangle_.angle(d)));
     if (footprint.taps == 1) return surroundings_.look(place, footprint.level);
     const double n = footprint.taps;
     Light sum{};
@@ -179,6 +194,8 @@ private:
   const Surroundings& surroundings_;
   Image& image_;
   SphereTriangle triangle_;
+  bool is_small_ = false;
+  Footprint footprint_; // of a small triangle
 };
 
 // The mip levels that the page's triangles read, by their corners.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "core/float4.h"
 #include "core/texture/shade.h"
 
 namespace orbis::texture {
@@ -14,17 +15,17 @@ namespace {
 using Weights = std::array<double, 3>;
 
 // A number in [0, 1] as the nearest multiple of 1 / most; what is no number is 0.
-template <class Number> Number rounded(double value) {
-  constexpr double most = std::numeric_limits<Number>::max();
-  return static_cast<Number>(value > 0 ? std::min(most * value + 0.5, most) : 0.0);
+template <class Number, class Real> Number rounded(Real value) {
+  constexpr Real most = std::numeric_limits<Number>::max();
+  return static_cast<Number>(value > 0 ? std::min(most * value + Real(0.5), most) : Real(0));
 }
 
-template <class Picture> void store_numbers(const Vec3d& value, Picture& image, std::uint32_t x, std::uint32_t y) {
+// value: three numbers, by index.
+template <class Value, class Picture>
+void store_numbers(const Value& value, Picture& image, std::uint32_t x, std::uint32_t y) {
   auto* p = image.at(x, y);
   using Number = std::remove_reference_t<decltype(*p)>;
-  p[0] = rounded<Number>(value.x);
-  p[1] = rounded<Number>(value.y);
-  p[2] = rounded<Number>(value.z);
+  for (int c = 0; c < 3; ++c) p[c] = rounded<Number>(value[c]);
 }
 
 template <class Picture> Picture empty_picture(const TexelMap& map, std::uint32_t channels) {
@@ -33,37 +34,54 @@ template <class Picture> Picture empty_picture(const TexelMap& map, std::uint32_
   return image;
 }
 
-template <class Vector> Vec3d vector_of(const Vector& v) { return {double{v.x}, double{v.y}, double{v.z}}; }
-
-template <class Corners> Vec3d blend(const Corners& corners, const Weights& w) {
-  return vector_of(corners[0]) * w[0] + vector_of(corners[1]) * w[1] + vector_of(corners[2]) * w[2];
+Vec3d blend(const std::array<Vec3f, 3>& corners, const Weights& w) {
+  return Vec3d(corners[0]) * w[0] + Vec3d(corners[1]) * w[1] + Vec3d(corners[2]) * w[2];
 }
 
-Vec3d unit_or(const Vec3d& v, const Vec3d& otherwise) {
-  const double length = norm(v);
+// What the corners of a triangle have.
+using Corners = std::array<Float4, 3>;
+
+Float4 blend(const Corners& corners, const Weights& w) {
+  return corners[0] * static_cast<float>(w[0]) + corners[1] * static_cast<float>(w[1]) +
+         corners[2] * static_cast<float>(w[2]);
+}
+
+// Only the direction of a normal counts; the longest of a triangle's becomes 1, so that products of several fit floats.
+Corners scaled(const std::array<Vec3f, 3>& normals) {
+  double longest = 0;
+  for (const Vec3f& n : normals) longest = std::max(longest, norm(Vec3d(n)));
+  const double scale = longest > 0 ? 1 / longest : 0;
+  return {float4(Vec3d(normals[0]) * scale), float4(Vec3d(normals[1]) * scale), float4(Vec3d(normals[2]) * scale)};
+}
+
+Float4 unit_or(const Float4& v, const Float4& otherwise) {
+  const float length = norm3(v);
   return length > 0 && std::isfinite(length) ? v * (1 / length) : otherwise;
 }
 
 // The frame of a renderer at a point of a triangle: n ~ x T + y B + z N with T, B and N brought to unit length. They
 // are kept as interpolated, at whatever length.
 struct Frame {
-  Vec3d tangent, bitangent, normal;
+  Float4 tangent, bitangent, normal;
 
-  [[nodiscard]] Vec3d to_space(const Vec3d& v) const {
-    return unit_or(tangent, {1, 0, 0}) * v.x + unit_or(bitangent, {0, 1, 0}) * v.y + unit_or(normal, {0, 0, 1}) * v.z;
+  [[nodiscard]] Float4 to_space(const Float4& v) const {
+    return unit_or(tangent, Float4{1, 0, 0, 0}) * v[0] + unit_or(bitangent, Float4{0, 1, 0, 0}) * v[1] +
+           unit_or(normal, Float4{0, 0, 1, 0}) * v[2];
   }
 
   // The inverse, of any vector along n, brought to unit length (Cramer: interpolated vectors are not perpendicular to
   // each other). With T = a T', B = b B', N = c N' and T', B', N' of unit length, x ~ n . (B' x N') is along
   // a n . (B x N), and so on: one division is enough. Where they lie in one plane no colour would be right; the flat
   // one stays.
-  [[nodiscard]] Vec3d from_space(const Vec3d& n) const {
-    const double a = norm(tangent), b = norm(bitangent), c = norm(normal);
-    const Vec3d along_x = cross(bitangent, normal);
-    const double determinant = dot(tangent, along_x);
-    if (!(std::abs(determinant) >= 1e-6 * a * b * c)) return {0, 0, 1};
-    const Vec3d v{a * dot(n, along_x), b * dot(n, cross(normal, tangent)), c * dot(n, cross(tangent, bitangent))};
-    return unit_or(v * (determinant > 0 ? 1.0 : -1.0), {0, 0, 1});
+  [[nodiscard]] Float4 from_space(const Float4& n) const {
+    constexpr Float4 flat{0, 0, 1, 0};
+    const float a = norm3(tangent), b = norm3(bitangent), c = norm3(normal);
+    const Float4 along_x = cross3(bitangent, normal);
+    const float determinant = dot3(tangent, along_x);
+    if (!(std::abs(determinant) >= 1e-5F * a * b * c)) return flat;
+    const Float4 v{a * dot3(n, along_x), b * dot3(n, cross3(normal, tangent)), c * dot3(n, cross3(tangent, bitangent)),
+                   0};
+    return unit_or(determinant > 0 ? v : -v, flat);
   }
 };
 
@@ -71,11 +89,11 @@ struct Frame {
 class CornerFrames {
 public:
   CornerFrames() = default;
-  CornerFrames(const std::array<Tangent, 3>& tangents, const std::array<Vec3f, 3>& normals) {
+  CornerFrames(const std::array<Tangent, 3>& tangents, const std::array<Vec3f, 3>& normals)
+      : normals_(scaled(normals)) {
     for (std::size_t k = 0; k < 3; ++k) {
-      tangents_[k] = vector_of(tangents[k]);
-      normals_[k] = vector_of(normals[k]);
-      bitangents_[k] = cross(normals_[k], tangents_[k]) * double{tangents[k].w};
+      tangents_[k] = Float4{tangents[k].x, tangents[k].y, tangents[k].z, 0};
+      bitangents_[k] = cross3(normals_[k], tangents_[k]) * tangents[k].w;
     }
   }
   [[nodiscard]] Frame at(const Weights& w) const {
@@ -83,7 +101,7 @@ public:
   }
 
 private:
-  std::array<Vec3d, 3> tangents_, bitangents_, normals_;
+  Corners tangents_{}, bitangents_{}, normals_{};
 };
 
 // Reads a field at one place after the other; what belongs to a triangle is kept until the next.
@@ -155,32 +173,34 @@ public:
   }
 
   void triangle(std::uint32_t t, const TriangleInPage& place) {
-    triangle_ = t;
     if (own_frames_) corners_ = frames_->corners(t);
     scale_ = source_.detail != nullptr ? source_.scales[source_.source_of[t]] : 0.0F;
-    if (scale_ == 0) return;
+    if (scale_ == 0) {
+      normals_ = scaled(source_.normals[t]);
+      return;
+    }
     footprint_ = source_.detail->footprint(t, place);
     detail_frames_ = {source_.tangents[t], source_.normals[t]};
   }
 
   void texel(std::uint32_t x, std::uint32_t y, const Weights& w) {
-    const Vec3d along = normal_at(w);
-    Vec3d n;
+    const Float4 along = normal_at(w);
+    Float4 n;
     if (own_frames_)
       n = corners_.at(w).from_space(along);
     else if (frames_)
       n = frames_->at(x, y, x + 0.5, y + 0.5).from_space(along);
     else
-      n = unit_or(along, {0, 0, 1});
-    store_numbers((n + Vec3d{1, 1, 1}) * 0.5, image_, x, y);
+      n = unit_or(along, Float4{0, 0, 1, 0});
+    store_numbers((n + 1.0F) * 0.5F, image_, x, y);
   }
 
 private:
   // In the space of POSITION, of any length.
-  [[nodiscard]] Vec3d normal_at(const Weights& w) const {
-    if (scale_ == 0) return blend(source_.normals[triangle_], w);
+  [[nodiscard]] Float4 normal_at(const Weights& w) const {
+    if (scale_ == 0) return blend(normals_, w);
     const Light c = TextureReader::read(footprint_, w);
-    return detail_frames_.at(w).to_space({scale_ * (2.0 * c[0] - 1), scale_ * (2.0 * c[1] - 1), 2.0 * c[2] - 1});
+    return detail_frames_.at(w).to_space(Float4{scale_ * (2 * c[0] - 1), scale_ * (2 * c[1] - 1), 2 * c[2] - 1, 0});
   }
 
   const NormalSource& source_;
@@ -188,8 +208,8 @@ private:
   bool own_frames_ = false; // those of the triangles that the map shows
   CornerFrames corners_;    // of the triangle in work, with own_frames_
   Picture& image_;
-  std::uint32_t triangle_ = 0;
   float scale_ = 0;
+  Corners normals_{}; // of the triangle in work, without detail
   TextureReader::Footprint footprint_;
   CornerFrames detail_frames_;
 };
@@ -203,7 +223,7 @@ public:
 
   void texel(std::uint32_t x, std::uint32_t y, const Weights& w) {
     const Vec3d p = blend(*corners_, w) - box_.low, size = box_.high - box_.low;
-    store_numbers({fraction(p.x, size.x), fraction(p.y, size.y), fraction(p.z, size.z)}, image_, x, y);
+    store_numbers(std::array{fraction(p.x, size.x), fraction(p.y, size.y), fraction(p.z, size.z)}, image_, x, y);
   }
 
 private:

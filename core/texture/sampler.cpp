@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/float4.h"
+
 namespace orbis::texture {
 namespace {
 
@@ -43,8 +45,6 @@ inline Between between(double at, std::uint32_t size, Wrap wrap) {
   };
   return {static_cast<std::uint32_t>(edge(i)), static_cast<std::uint32_t>(edge(i + 1)), part};
 }
-
-using Float4 [[gnu::vector_size(16)]] = float; // one addition, one multiplication for all four
 
 // value: of the first three channels, by their bytes.
 inline Float4 texel(const Image& image, std::uint32_t x, std::uint32_t y, const std::array<float, 256>& value) {

@@ -11,13 +11,6 @@ constexpr std::uint32_t band_rows = 32; // rasterised by one thread at a time
 
 } // namespace
 
-std::array<double, 3> TriangleInPage::weights(double x, double y) const {
-  const double dx = x - corners[0].x, dy = y - corners[0].y;
-  std::array<double, 3> w{};
-  for (std::size_t k = 0; k < 3; ++k) w[k] = at_corner_0[k] + along_x[k] * dx + along_y[k] * dy;
-  return w;
-}
-
 std::array<double, 3> TriangleInPage::nearest_weights(double x, double y) const {
   const std::array<double, 3> inside = weights(x, y);
   if (inside[0] >= 0 && inside[1] >= 0 && inside[2] >= 0) return inside;
@@ -61,10 +54,11 @@ TriangleInPage TexelMap::place(std::uint32_t triangle) const {
   const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
   out.at_corner_0 = {1, 0, 0};
   if (area == 0) return out; // it covers no texel; its first corner stands for it
+  const double scale = 1 / area;
   for (std::size_t k = 0; k < 3; ++k) {
     const RasterPoint &a = p[(k + 1) % 3], &b = p[(k + 2) % 3];
-    out.along_x[k] = -(b.y - a.y) / area;
-    out.along_y[k] = (b.x - a.x) / area;
+    out.along_x[k] = (a.y - b.y) * scale;
+    out.along_y[k] = (b.x - a.x) * scale;
   }
   return out;
 }
@@ -75,10 +69,10 @@ void TexelMap::cover(mesh::ThreadPool& pool) {
   pool.for_blocks(bands.count(), 1, [&](std::size_t band, std::size_t) {
     const std::uint32_t top = bands.top(band), rows = bands.rows(band);
     bands.for_each(band, corners_of, [&](std::uint32_t t, const std::array<RasterPoint, 3>& p) {
-      rasterize(p, width_, rows, [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>&) {
-        const std::size_t texel = std::size_t{top + y} * width_ + x;
-        triangle_[texel] = t;
-        covered_[texel] = 1;
+      rasterize_rows(p, width_, rows, [&](const CoveredRow& row) {
+        const std::size_t first = std::size_t{top + row.y} * width_;
+        std::fill(&triangle_[first + row.begin], &triangle_[first] + row.end, t);
+        std::fill(&covered_[first + row.begin], &covered_[first] + row.end, std::uint8_t{1});
       });
     });
   });

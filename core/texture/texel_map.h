@@ -29,7 +29,12 @@ struct TriangleInPage {
   std::array<double, 3> at_corner_0{}; // (1, 0, 0): the weights at corners[0]
 
   // The weights at a place (x, y), in texels, inside or not.
-  [[nodiscard]] std::array<double, 3> weights(double x, double y) const;
+  [[nodiscard]] std::array<double, 3> weights(double x, double y) const {
+    const double dx = x - corners[0].x, dy = y - corners[0].y;
+    std::array<double, 3> w{};
+    for (std::size_t k = 0; k < 3; ++k) w[k] = at_corner_0[k] + along_x[k] * dx + along_y[k] * dy;
+    return w;
+  }
   // The weights at the point of the triangle that is nearest to (x, y) in the page.
   [[nodiscard]] std::array<double, 3> nearest_weights(double x, double y) const;
 };
