@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 
 #include "core/vec3.h"
 
@@ -22,9 +21,8 @@ inline float dot3(const Float4& a, const Float4& b) {
 }
 inline float norm3(const Float4& a) { return std::sqrt(dot3(a, a)); }
 inline Float4 cross3(const Float4& a, const Float4& b) {
-  using Lanes [[gnu::vector_size(16)]] = std::int32_t;
-  constexpr Lanes next{1, 2, 0, 3};
-  return __builtin_shuffle(a * __builtin_shuffle(b, next) - __builtin_shuffle(a, next) * b, next);
+  const auto next = [](const Float4& v) { return __builtin_shufflevector(v, v, 1, 2, 0, 3); };
+  return next(a * next(b) - next(a) * b);
 }
 
 } // namespace orbis

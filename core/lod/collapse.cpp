@@ -39,7 +39,7 @@ Collapser::Collapser(const FullSurface& full, WedgeMesh& mesh) : full_(full), me
 
 Uv Collapser::scaled(const Vec2f& uv) const { return {full_.uv_scale() * uv.x, full_.uv_scale() * uv.y}; }
 
-bool Collapser::may_go(std::uint32_t a, std::uint32_t b, const EdgeSides& sides) const {
+bool Collapser::may_go(std::uint32_t a, std::uint32_t b, const EdgeSides& sides, Seams seams) const {
   const Point &removed = mesh_.points[a], &kept = mesh_.points[b];
   if (removed.is_joint && constraints.keeps_joints) {
     // Along the rim, from joint to joint; between two of them a point of one rim alone lies on a straight edge, which
@@ -47,30 +47,32 @@ bool Collapser::may_go(std::uint32_t a, std::uint32_t b, const EdgeSides& sides)
     if (!kept.is_joint || !sides.is_border()) return false;
     if (removed.joint != none && (kept.joint == none || !mesh_.is_between_joints(a))) return false;
   }
-  if (!constraints.keeps_seams || removed.kind == PointKind::interior) return true;
+  if (seams == Seams::broken || removed.kind == PointKind::interior) return true;
   return removed.kind == PointKind::seam && kept.kind != PointKind::interior;
 }
 
-std::optional<Collapse> Collapser::propose(std::uint32_t a, std::uint32_t b, std::uint32_t attempt) const {
+std::optional<Collapse> Collapser::propose(std::uint32_t a, std::uint32_t b, Seams seams, std::uint32_t attempt) const {
   const std::optional<EdgeSides> sides = mesh_.sides_of(a, b);
   if (!sides) return std::nullopt;
   const Point &at_a = mesh_.points[a], &at_b = mesh_.points[b];
   const auto both = [&](PointKind kind) { return at_a.kind == kind && at_b.kind == kind; };
   if (both(PointKind::interior) || (both(PointKind::seam) && sides->is_border() && !at_a.is_joint && !at_b.is_joint)) {
-    if (attempt == 0) return move_both(a, b, *sides);
-    --attempt;
+    if (attempt == 0 && seams == Seams::kept) return move_both(a, b, *sides);
+    if (seams == Seams::kept) --attempt;
   }
   // An edge from seam to seam through a chart stays: to contract it would pinch the chart.
   const bool is_across = at_a.kind != PointKind::interior && at_b.kind != PointKind::interior && !sides->is_seam();
-  if (constraints.keeps_seams && (is_across || attempt >= 2)) return std::nullopt;
+  if (seams == Seams::kept && (is_across || attempt >= 2)) return std::nullopt;
   constexpr std::array<unsigned, 4> ways{0, 3, 1, 2};
   if (attempt >= 2 * ways.size()) return std::nullopt;
   const unsigned stays = ways[attempt / 2];
   std::optional<Collapse> first, second;
-  if (may_go(a, b, *sides)) first = keep(b, a, *sides, stays);
-  if (may_go(b, a, *sides)) second = keep(a, b, reversed(*sides), stays);
+  if (may_go(a, b, *sides, seams)) first = keep(b, a, *sides, stays);
+  if (may_go(b, a, *sides, seams)) second = keep(a, b, reversed(*sides), stays);
   if (!first || (second && second->cost < first->cost)) std::swap(first, second);
-  return attempt % 2 == 0 ? first : second;
+  std::optional<Collapse>& chosen = attempt % 2 == 0 ? first : second;
+  if (chosen) chosen->seams = seams;
+  return chosen;
 }
 
 std::optional<Collapse> Collapser::move_both(std::uint32_t a, std::uint32_t b, const EdgeSides& sides) const {
@@ -171,7 +173,7 @@ bool Collapser::keeps_outline(const Collapse& collapse, double& drift) const {
     if (distance <= rounding) return true;
     drift = distance +
             std::max({mesh_.points[collapse.removed].drift, mesh_.points[collapse.kept].drift, mesh_.points[q].drift});
-    return drift <= constraints.outline_tolerance;
+    return false;
   }
   return false;
 }
@@ -232,15 +234,15 @@ bool Collapser::keeps_triangles(const Collapse& collapse, const Goal& goal) cons
 
 std::optional<Collapser::Goal> Collapser::check(const Collapse& collapse) {
   double drift = 0;
-  if (constraints.keeps_seams && mesh_.points[collapse.removed].kind == PointKind::seam &&
-      !collapse.sides.is_border() && !keeps_outline(collapse, drift))
+  const bool breaks = collapse.seams == Seams::broken;
+  if (mesh_.points[collapse.removed].kind == PointKind::seam && !collapse.sides.is_border() &&
+      !keeps_outline(collapse, drift) && !breaks)
     return std::nullopt;
-  if (!mesh_.link_condition(collapse.removed, collapse.kept, collapse.sides, !constraints.keeps_seams))
-    return std::nullopt;
+  if (!mesh_.link_condition(collapse.removed, collapse.kept, collapse.sides, breaks)) return std::nullopt;
   std::optional<Goal> goal = goal_of(collapse);
   if (!goal || !keeps_charts(collapse, *goal)) return std::nullopt;
   if (!keeps_triangles(collapse, *goal)) {
-    if (constraints.keeps_seams || goal->has_moved) return std::nullopt;
+    if (!breaks || goal->has_moved) return std::nullopt;
     // The points that the last few triangles would need may not be there: half way between the two is one more.
     const Vec3d a(sphere::from_grid(mesh_.points[collapse.removed].sphere)), b(sphere::from_grid(goal->sphere));
     goal->sphere = sphere::to_grid(normalized(a + b));
@@ -269,24 +271,25 @@ bool Collapser::add_twins(const Collapse& collapse) {
   const std::uint32_t joint = mesh_.points[collapse.kept].joint;
   for (const std::uint32_t twin : mesh_.at_joint[mesh_.points[collapse.removed].joint]) {
     if (twin == collapse.removed || !mesh_.points[twin].is_alive) continue;
-    const std::optional<Step> step = twin_step(twin, joint);
+    const std::optional<Step> step = twin_step(twin, joint, collapse.seams);
     if (!step) return false;
     steps_.push_back(*step);
   }
   return are_apart();
 }
 
-std::optional<Collapser::Step> Collapser::twin_step(std::uint32_t twin, std::uint32_t joint) {
+std::optional<Collapser::Step> Collapser::twin_step(std::uint32_t twin, std::uint32_t joint, Seams seams) {
   std::vector<std::uint32_t> ring;
   mesh_.neighbours_of(twin, ring);
   for (const std::uint32_t q : ring) {
     if (mesh_.points[q].joint != joint) continue;
     const std::optional<EdgeSides> sides = mesh_.sides_of(twin, q);
-    if (!sides || !may_go(twin, q, *sides)) continue;
+    if (!sides || !may_go(twin, q, *sides, seams)) continue;
     for (const unsigned stays : {0U, 3U}) {
-      if (stays != 0 && constraints.keeps_seams) break;
-      const std::optional<Collapse> collapse = keep(q, twin, *sides, stays);
+      if (stays != 0 && seams == Seams::kept) break;
+      std::optional<Collapse> collapse = keep(q, twin, *sides, stays);
       if (!collapse) continue;
+      collapse->seams = seams;
       if (const std::optional<Goal> goal = check(*collapse)) return Step{*collapse, *goal};
     }
   }
@@ -310,10 +313,11 @@ bool Collapser::are_apart() const {
 
 void Collapser::apply(const Step& step) {
   const auto& [collapse, goal] = step;
-  if (!constraints.keeps_seams) tear(collapse);
+  const bool breaks = collapse.seams == Seams::broken;
+  if (breaks) tear(collapse);
   Point &kept = mesh_.points[collapse.kept], &removed = mesh_.points[collapse.removed];
   mesh_.contract(collapse.removed, collapse.kept, collapse.sides, collapse.into);
-  const bool has_more = !constraints.keeps_seams && removed.kind != PointKind::interior; // wedges than its kind says
+  const bool has_more = breaks && removed.kind != PointKind::interior; // wedges than its kind says
   kept.kind = has_more ? PointKind::fixed : std::max(kept.kind, removed.kind);
   kept.position = goal.position;
   kept.drift = std::max(kept.drift, static_cast<float>(goal.drift));

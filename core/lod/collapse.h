@@ -13,14 +13,18 @@ namespace orbis::lod {
 // What a collapse must respect beside the map, which never folds, and the charts, which no triangle ever leaves.
 struct Constraints {
   bool keeps_normals = true; // no triangle turns by more than some 80 degrees at once
-  // How far, in the atlas, a seam may leave its outline on the full surface. Rounding is always allowed.
-  double outline_tolerance = 0;
-  // Seams stay seams: one side shows what the other does. If not, the texture may be torn: a point may leave its place
-  // at a seam while its copies in other charts stay, and the last three points of a hole may become one edge.
-  bool keeps_seams = true;
   // The rims of a cut change together, so that no gap opens.
   bool keeps_joints = true;
 };
+
+// Seams stay seams, on the outline that they have on the full surface: one side shows what the other does. Where that
+// is not kept the texture may be torn: a point may leave its place at a seam while its copies in other charts stay, a
+// seam may leave its outline, and the last three points of a hole may become one edge.
+enum class Seams : std::uint8_t { kept, broken };
+
+// What a collapse that breaks seams costs, as a multiple of Q: the error of the texels beside them is in Q already,
+// that they do not fit together is not. docs/lods.md says what other prices do.
+inline constexpr double price_of_seams = 16;
 
 struct Collapse {
   std::uint32_t removed = 0, kept = 0;
@@ -29,8 +33,10 @@ struct Collapse {
   Vec3d position;                      // of the kept point
   std::optional<Uv> moved_to;          // its new place in the atlas (scaled); else it keeps its own
   double cost = 0;                     // Q there
+  Seams seams = Seams::kept;
 
   [[nodiscard]] bool tears() const { return into[0] == sides.at_a[0] || into[1] == sides.at_a[1]; }
+  [[nodiscard]] double price() const { return seams == Seams::kept ? 1 : price_of_seams; }
 };
 
 class Collapser {
@@ -40,8 +46,14 @@ public:
   static constexpr std::uint32_t attempts = 9;
 
   // The attempts for an edge (a, b), best first by design: 0 where Q is least, if both ends may move; then with the
-  // place in the atlas of one end, the one of the smaller Q first; then those that tear. Nothing where there are fewer.
-  [[nodiscard]] std::optional<Collapse> propose(std::uint32_t a, std::uint32_t b, std::uint32_t attempt) const;
+  // place in the atlas of one end, the one of the smaller Q first; then, if seams need not be kept, those that tear.
+  // Nothing where there are fewer.
+  [[nodiscard]] std::optional<Collapse> propose(std::uint32_t a, std::uint32_t b, Seams seams,
+                                                std::uint32_t attempt) const;
+  // Whether there is a seam at either end.
+  [[nodiscard]] bool meets_seam(std::uint32_t a, std::uint32_t b) const {
+    return mesh_.points[a].kind != PointKind::interior || mesh_.points[b].kind != PointKind::interior;
+  }
 
   // Does it if the result is sound: the link condition holds; in the atlas (for float32) and on the sphere (on the
   // grid) every changed triangle is positively oriented, decided exactly; no triangle covers a place in the atlas that
@@ -67,7 +79,7 @@ private:
   };
 
   // Whether a may become b.
-  [[nodiscard]] bool may_go(std::uint32_t a, std::uint32_t b, const EdgeSides& sides) const;
+  [[nodiscard]] bool may_go(std::uint32_t a, std::uint32_t b, const EdgeSides& sides, Seams seams) const;
   // stays: bit i: the removed point's wedge on side i keeps its place in the atlas.
   [[nodiscard]] std::optional<Collapse> keep(std::uint32_t kept, std::uint32_t removed, const EdgeSides& sides,
                                              unsigned stays) const;
@@ -80,7 +92,7 @@ private:
   [[nodiscard]] bool keeps_triangles(const Collapse& collapse, const Goal& goal) const;
   [[nodiscard]] std::optional<Goal> check(const Collapse& collapse);
   [[nodiscard]] bool add_twins(const Collapse& collapse);
-  [[nodiscard]] std::optional<Step> twin_step(std::uint32_t twin, std::uint32_t joint);
+  [[nodiscard]] std::optional<Step> twin_step(std::uint32_t twin, std::uint32_t joint, Seams seams);
   [[nodiscard]] bool are_apart() const;
   void apply(const Step& step);
   void tear(const Collapse& collapse);

@@ -26,14 +26,14 @@ struct Candidate {
   float cost;
   std::uint32_t a, b;
   std::uint32_t versions; // of both ends, added
-  std::uint32_t attempt;
+  std::uint16_t attempt;
+  Seams seams;
 };
 
 class Simplifier {
 public:
-  Simplifier(const FullSurface& full, double gutter, mesh::ThreadPool& threads, Progress& progress)
-      : full_(full), gutter_(gutter), progress_(progress), threads_(threads), mesh_(full, threads),
-        collapser_(full, mesh_) {
+  Simplifier(const FullSurface& full, mesh::ThreadPool& threads, Progress& progress)
+      : full_(full), progress_(progress), threads_(threads), mesh_(full, threads), collapser_(full, mesh_) {
     first_count_ = mesh_.triangle_count;
     fill_queue();
   }
@@ -69,8 +69,8 @@ private:
         if (!mesh_.points[p].is_alive) continue;
         mesh_.neighbours_of(p, ring);
         for (const std::uint32_t q : ring) {
-          const std::optional<Candidate> candidate = p < q ? candidate_of(p, q, 0) : std::nullopt;
-          if (candidate) found[begin / grain].push_back(*candidate);
+          if (p < q)
+            for_candidates(p, q, [&](const Candidate& candidate) { found[begin / grain].push_back(candidate); });
         }
       }
     });
@@ -80,16 +80,21 @@ private:
   }
 
   // The first attempt from `attempt` on that is possible.
-  [[nodiscard]] std::optional<Candidate> candidate_of(std::uint32_t a, std::uint32_t b, std::uint32_t attempt) const {
+  [[nodiscard]] std::optional<Candidate> candidate_of(std::uint32_t a, std::uint32_t b, Seams seams,
+                                                      std::uint16_t attempt) const {
     if (a > b) std::swap(a, b);
     for (; attempt < Collapser::attempts; ++attempt)
-      if (const std::optional<Collapse> collapse = collapser_.propose(a, b, attempt))
-        return Candidate{static_cast<float>(collapse->cost), a, b, versions(a, b), attempt};
+      if (const std::optional<Collapse> collapse = collapser_.propose(a, b, seams, attempt))
+        return Candidate{static_cast<float>(collapse->cost * collapse->price()), a, b, versions(a, b), attempt, seams};
     return std::nullopt;
   }
 
-  void push(std::uint32_t a, std::uint32_t b, std::uint32_t attempt) {
-    if (const std::optional<Candidate> candidate = candidate_of(a, b, attempt)) queue_.push(*candidate);
+  // Keeping seams, and where there are any, breaking them.
+  template <class Visit> void for_candidates(std::uint32_t a, std::uint32_t b, Visit visit) const {
+    for (const Seams seams : {Seams::kept, Seams::broken}) {
+      if (seams == Seams::broken && !collapser_.meets_seam(a, b)) continue;
+      if (const std::optional<Candidate> candidate = candidate_of(a, b, seams, 0)) visit(*candidate);
+    }
   }
 
   [[nodiscard]] std::uint32_t versions(std::uint32_t a, std::uint32_t b) const {
@@ -102,18 +107,20 @@ private:
     const Candidate next = queue_.top();
     const bool is_alive = mesh_.points[next.a].is_alive && mesh_.points[next.b].is_alive;
     const bool is_valid = is_alive && next.versions == versions(next.a, next.b);
-    const std::optional<Collapse> collapse = is_valid ? collapser_.propose(next.a, next.b, next.attempt) : std::nullopt;
+    const std::optional<Collapse> collapse =
+        is_valid ? collapser_.propose(next.a, next.b, next.seams, next.attempt) : std::nullopt;
     if (!collapse) {
       queue_.pop();
       return true;
     }
     const double deviation = squared_deviation(*collapse);
-    stopped_by_bound_ = target.deviation > 0 && deviation > target.deviation * target.deviation;
+    stopped_by_bound_ = target.deviation > 0 && deviation * collapse->price() > target.deviation * target.deviation;
     if (stopped_by_bound_) return false;
     queue_.pop();
     const std::span<const std::uint32_t> kept = collapser_.perform(*collapse);
     if (kept.empty()) {
-      push(next.a, next.b, next.attempt + 1);
+      const auto after = static_cast<std::uint16_t>(next.attempt + 1);
+      if (const std::optional<Candidate> other = candidate_of(next.a, next.b, next.seams, after)) queue_.push(*other);
       return true;
     }
     largest_ = std::max(largest_, deviation);
@@ -122,7 +129,8 @@ private:
     if (mesh_.points[collapse->removed].is_joint && !collapser_.constraints.keeps_joints) ++concessions_.opened;
     for (const std::uint32_t p : kept) {
       mesh_.neighbours_of(p, ring_);
-      for (const std::uint32_t q : ring_) push(p, q, 0);
+      for (const std::uint32_t q : ring_)
+        for_candidates(p, q, [&](const Candidate& candidate) { queue_.push(candidate); });
     }
     report();
     return true;
@@ -143,17 +151,11 @@ private:
     if (c.keeps_normals) {
       c.keeps_normals = false;
       concessions_.turned_normals = true;
-    } else if (c.outline_tolerance < gutter_) {
-      c.outline_tolerance = gutter_;
-    } else if (c.outline_tolerance < 1) {
-      c.outline_tolerance = 1;
-    } else if (c.keeps_seams) {
-      if (!drop(triangles, speck)) c.keeps_seams = false;
-    } else if (c.keeps_joints) {
-      c.keeps_joints = false;
-    } else {
-      return drop(triangles, any_size);
+      return true;
     }
+    if (drop(triangles, speck)) return true;
+    if (!c.keeps_joints) return drop(triangles, any_size);
+    c.keeps_joints = false;
     return true;
   }
 
@@ -172,7 +174,6 @@ private:
   }
 
   const FullSurface& full_;
-  double gutter_;
   Progress& progress_;
   mesh::ThreadPool& threads_;
   WedgeMesh mesh_;
@@ -187,9 +188,9 @@ private:
 
 } // namespace
 
-std::vector<Level> simplify(const FullSurface& full, std::span<const Target> targets, double gutter,
-                            mesh::ThreadPool& threads, Progress& progress) {
-  Simplifier simplifier(full, gutter, threads, progress);
+std::vector<Level> simplify(const FullSurface& full, std::span<const Target> targets, mesh::ThreadPool& threads,
+                            Progress& progress) {
+  Simplifier simplifier(full, threads, progress);
   std::vector<Level> levels(targets.size());
   std::vector<std::future<void>> touches; // after the levels: they end before those do
   for (std::size_t i = 0; i < targets.size(); ++i) {

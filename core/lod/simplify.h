@@ -19,7 +19,7 @@ struct Target {
   double deviation = 0;        // root mean square, at any vertex, as a fraction of the bounding box's diagonal; 0: any
 };
 
-// What had to give way for a target, in the order in which it does.
+// What gave way for a target.
 struct Concessions {
   bool turned_normals = false; // triangles may turn by more than 80 degrees in one step
   double outline = 0;          // how far, in the atlas, a seam between materials has left its line
@@ -45,18 +45,16 @@ struct Level {
 // Edge collapses in the order of their texture deviation (deviation_quadric.h), one level after the other.
 //
 //   targets  from fine to coarse; a target that is already met gives the level before it again
-//   gutter   of the atlas, in the atlas' units: by so much a seam between two materials of a chart may leave its line
-//            before it may go anywhere
 //
 // On every level: triangles are positively oriented in the atlas and on the sphere, exactly, wherever those of the full
 // surface are; none covers a place in the atlas that the chart does not; copies of a point along a seam agree to the
-// bit. A component keeps its topology, and its seams their lines, until a target cannot be met otherwise: Concessions
-// says what gives way. No level is empty.
+// bit, but where seams are broken, which costs as much as price_of_seams says. A component keeps its topology until a
+// target cannot be met otherwise: Concessions says what gave way. No level is empty.
 //
 // O(n log n). The collapses take one thread; the last touch of a level (refine.h) runs beside those for the next one if
 // there is a thread for it. The same bits with any number. Reports Stage::levels; throws
 // Error{canceled}.
-[[nodiscard]] std::vector<Level> simplify(const FullSurface& full, std::span<const Target> targets, double gutter,
+[[nodiscard]] std::vector<Level> simplify(const FullSurface& full, std::span<const Target> targets,
                                           mesh::ThreadPool& threads, Progress& progress);
 
 } // namespace orbis::lod

@@ -30,8 +30,8 @@ std::vector<lod::Target> targets_of(const Options& options, const Surface& surfa
   return targets;
 }
 
-// The part of the screen's height at which a texel that is off by the level's mean deviation is off by half a pixel on
-// a screen of 1080 rows; 1 where it is less all over the screen.
+// The part of the screen's height at which what is off by the level's mean deviation is off by half a pixel on a screen
+// of 1080 rows; 1 where it is less all over the screen.
 double coverage_of(double deviation) {
   constexpr double rows = 1080, pixels = 0.5;
   return deviation > 0 ? std::min(1.0, pixels / (rows * deviation)) : 1.0;
@@ -62,14 +62,12 @@ void note_concessions(const Report::Level& level, const std::string& where, Repo
   if (level.turned_normals)
     note("lod-turned-normals", "some triangles were allowed to turn by more than 80 degrees at once");
   if (level.outline_texels > 0)
-    note("lod-outline", "seams between materials had to leave their lines in the atlas by up to " +
-                            rounded(level.outline_texels) +
+    note("lod-outline", "seams left their lines in the atlas by up to " + rounded(level.outline_texels) +
                             " texels: along them one material shows the other's texels");
   if (level.torn_edges > 0)
-    note(
-        "lod-torn",
-        std::to_string(level.torn_edges) +
-            " edges had to be torn in the atlas: a chart's corners, or a hole, need more triangles than the level has");
+    note("lod-torn", std::to_string(level.torn_edges) +
+                         " edges were torn in the atlas, where to keep them whole would have cost much of the shape: "
+                         "the texture may show a step there");
   if (level.opened_points > 0)
     note("lod-opened-cuts", std::to_string(level.opened_points) +
                                 " points of a cut's rim had to go while the other rim kept theirs: a gap may show");
@@ -116,9 +114,6 @@ std::uint32_t widest_page(const texture::CutMesh& cut) {
   return widest;
 }
 
-// Of the widest page, where a gutter takes the smallest part of it.
-double gutter_in_uv(const texture::CutMesh& cut) { return static_cast<double>(cut.gutter) / widest_page(cut); }
-
 std::string name_of_target(const Options& options, std::size_t i) {
   Options one;
   one.lods = {options.lods[i]};
@@ -135,8 +130,7 @@ std::vector<DetailLevel> make_levels(const asset::Asset& asset, const Surface& s
   mesh::ThreadPool threads(report.options.threads);
   // The ruler has its tree by the time when there is something to measure.
   std::future<lod::Ruler> made = std::async(threads.beside(), [&full, &threads] { return lod::Ruler(full, threads); });
-  std::vector<lod::Level> levels =
-      lod::simplify(full, targets_of(report.options, surface), gutter_in_uv(cut), threads, progress);
+  std::vector<lod::Level> levels = lod::simplify(full, targets_of(report.options, surface), threads, progress);
   const lod::Ruler ruler = made.get();
   double coverage = 1;
   for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -144,7 +138,9 @@ std::vector<DetailLevel> make_levels(const asset::Asset& asset, const Surface& s
     Report::Level& facts = report.levels.emplace_back();
     facts.target = name_of_target(report.options, i);
     measure(ruler, levels[i], facts);
-    facts.screen_coverage = coverage = std::min(coverage, coverage_of(facts.texture_deviation / 100));
+    // Where surface is missing, no texel of the level is in a wrong place.
+    const double off = std::max(facts.texture_deviation, facts.mean_distance_from_full) / 100;
+    facts.screen_coverage = coverage = std::min(coverage, coverage_of(off));
     const lod::Concessions& c = levels[i].concessions;
     facts.turned_normals = c.turned_normals;
     facts.outline_texels = c.outline * widest_page(cut);

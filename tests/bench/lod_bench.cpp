@@ -205,8 +205,7 @@ void measure(const std::string& path, const Arguments& arguments) {
   mesh::ThreadPool threads(0);
   std::clock_t start = std::clock();
   const lod::FullSurface full(surface, primitive_of, cut);
-  const double gutter = static_cast<double>(cut.gutter) / cut.pages[0].width;
-  const std::vector<lod::Level> levels = lod::simplify(full, targets, gutter, threads, progress);
+  const std::vector<lod::Level> levels = lod::simplify(full, targets, threads, progress);
   const double simplification = milliseconds_since(start);
 
   start = std::clock();

@@ -18,11 +18,16 @@ struct World {
   texture::CutMesh cut;
 
   [[nodiscard]] lod::FullSurface full() const { return {surface, primitive_of, cut}; }
-  [[nodiscard]] double gutter() const { return static_cast<double>(cut.gutter) / cut.pages[0].width; }
 };
 
+inline std::uint32_t material_at(const Vec3d& p, std::uint32_t materials) {
+  if (materials == 2) return p.z > 0 ? 1 : 0;
+  const auto patch = [](double x) { return static_cast<std::uint32_t>(std::floor(2 * (x + 2))); };
+  return (patch(p.x) + 3 * patch(p.y) + 5 * patch(p.z)) % materials;
+}
+
 // A bumpy sphere of 8 * 4^subdivisions triangles. The map is its projection to the sphere, turned at random; the
-// northern half is of another material where `materials` is 2.
+// northern half is of another material where `materials` is 2; more lie in patches with ragged borders.
 inline World bumpy_world(int subdivisions, std::uint32_t seed, std::uint32_t materials = 1) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> any(0.5, 3.0);
@@ -40,7 +45,7 @@ inline World bumpy_world(int subdivisions, std::uint32_t seed, std::uint32_t mat
                    0.08 * std::sin(9 * s.z * frequency[3])));
   }
   for (const mesh::Triangle& t : world.surface.triangles)
-    world.primitive_of.push_back(materials == 2 && world.surface.positions[t[0]].z > 0 ? 1 : 0);
+    world.primitive_of.push_back(material_at(Vec3d(world.surface.positions[t[0]]), materials));
   // Vertices of their own for each material, as a file has them.
   std::vector<mesh::Triangle> corners = world.surface.triangles;
   const auto count = static_cast<mesh::Index>(world.surface.positions.size());

@@ -35,7 +35,7 @@ lod::Level whole(const lod_tests::World& world) {
   NoProgress progress;
   mesh::ThreadPool pool(0);
   const std::vector<lod::Target> all{{world.cut.triangles.size(), 0}};
-  return lod::simplify(world.full(), all, 0, pool, progress).front();
+  return lod::simplify(world.full(), all, pool, progress).front();
 }
 
 } // namespace
@@ -116,7 +116,7 @@ TEST_CASE("fitted positions are closer to the full surface than those that were 
   NoProgress progress;
   const std::vector<lod::Target> targets{{400, 0}};
   mesh::ThreadPool threads(1);
-  lod::Level level = lod::simplify(full, targets, 0, threads, progress).front();
+  lod::Level level = lod::simplify(full, targets, threads, progress).front();
   const lod::Ruler ruler(full, threads);
   const double before = ruler.texture_deviation(level).mean;
   std::mt19937 random(9);

@@ -115,7 +115,7 @@ TEST_CASE("both rims of a cut keep the same line on every level that is not too 
   NoProgress progress;
   const std::vector<lod::Target> targets{{1200, 0}, {400, 0}, {100, 0}};
   mesh::ThreadPool pool(0);
-  const std::vector<lod::Level> levels = lod::simplify(full, targets, world.gutter(), pool, progress);
+  const std::vector<lod::Level> levels = lod::simplify(full, targets, pool, progress);
   std::set<Place> before;
   for (const lod::Level& level : levels) {
     CHECK(level.mesh.triangles.size() <= targets[static_cast<std::size_t>(&level - levels.data())].triangles);

@@ -16,11 +16,11 @@ using lod_tests::World;
 
 namespace {
 
-lod::Level level_of(const World& world, const lod::FullSurface& full, std::uint64_t triangles) {
+lod::Level level_of(const lod::FullSurface& full, std::uint64_t triangles) {
   NoProgress progress;
   const std::vector<lod::Target> targets{{triangles, 0}};
   mesh::ThreadPool pool(0);
-  return lod::simplify(full, targets, world.gutter(), pool, progress).front();
+  return lod::simplify(full, targets, pool, progress).front();
 }
 
 std::vector<std::uint32_t> copies_of_points(const lod::Level& level) {
@@ -75,7 +75,7 @@ TEST_CASE("a level that was shaken comes back to the full surface, with as many 
     const lod::FullSurface full = world.full();
     mesh::ThreadPool threads(1);
     const lod::Ruler ruler(full, threads);
-    lod::Level level = level_of(world, full, 400);
+    lod::Level level = level_of(full, 400);
     const double before = ruler.texture_deviation(level).mean;
     shake(level, 0.07, seed);
     const double shaken = ruler.texture_deviation(level).mean;
@@ -90,7 +90,7 @@ TEST_CASE("a level that was shaken comes back to the full surface, with as many 
 TEST_CASE("each step lowers the deviation, folds nothing and keeps the surface closed") {
   const World world = bumpy_world(4, 3);
   const lod::FullSurface full = world.full();
-  lod::Level level = level_of(world, full, 300);
+  lod::Level level = level_of(full, 300);
   shake(level, 0.03, 3);
   lod::Draft draft(full, level);
   const int sign = draft.atlas_orientation(level.mesh.triangles[0]);
@@ -113,7 +113,7 @@ TEST_CASE("each step lowers the deviation, folds nothing and keeps the surface c
 TEST_CASE("what lies on the borders of charts and materials keeps its place in the atlas") {
   const World world = bumpy_world(4, 5, 2);
   const lod::FullSurface full = world.full();
-  lod::Level level = level_of(world, full, 500);
+  lod::Level level = level_of(full, 500);
   shake(level, 0.02, 5);
   const std::vector<texture::CutVertex> before = level.mesh.vertices;
   const std::vector<std::uint32_t> copies = copies_of_points(level);
@@ -131,7 +131,7 @@ TEST_CASE("what lies on the borders of charts and materials keeps its place in t
 TEST_CASE("the full surface itself is left alone") {
   const World world = bumpy_world(3, 6);
   const lod::FullSurface full = world.full();
-  lod::Level level = level_of(world, full, world.cut.triangles.size());
+  lod::Level level = level_of(full, world.cut.triangles.size());
   REQUIRE(level.mesh.triangles.size() == world.cut.triangles.size());
   const std::vector<Vec3f> positions = level.positions;
   lod::refine(full, level, NoProgress{});

@@ -37,7 +37,7 @@ struct Studio {
     NoProgress progress;
     mesh::ThreadPool pool(0);
     const std::vector<lod::Target> targets{{triangles, 0}};
-    return lod::simplify(full, targets, world.gutter(), pool, progress).front();
+    return lod::simplify(full, targets, pool, progress).front();
   }
 
   const lod_tests::World& world;

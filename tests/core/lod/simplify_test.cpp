@@ -23,7 +23,7 @@ namespace {
 std::vector<lod::Level> levels_of(const World& world, std::vector<lod::Target> targets) {
   NoProgress progress;
   mesh::ThreadPool pool(0);
-  return lod::simplify(world.full(), targets, world.gutter(), pool, progress);
+  return lod::simplify(world.full(), targets, pool, progress);
 }
 
 std::vector<lod::Target> counts(std::initializer_list<std::uint64_t> triangles) {
@@ -186,6 +186,17 @@ TEST_CASE("four triangles are reached where charts have to give way, still witho
   }
 }
 
+TEST_CASE("of a surface in patches of many materials seams give way before its shape does") {
+  // 8,192 triangles. Where seams were kept as long as that was possible, 800 were off by 0.0031 in the mean.
+  const World world = bumpy_world(5, 3, 5);
+  const lod::FullSurface full = world.full();
+  mesh::ThreadPool threads(1);
+  const lod::Level level = levels_of(world, counts({800})).front();
+  CHECK(lod::Ruler(full, threads).distances(level).from_full < 0.0022);
+  CHECK(level.concessions.torn > 0);
+  CHECK(level.concessions.torn < 20);
+}
+
 TEST_CASE("where the surface ends, no level shows what lies behind the rim, however few triangles it has") {
   for (const std::uint32_t seed : {1U, 2U, 3U}) {
     const World world = lod_tests::punctured(bumpy_world(4, seed));
@@ -228,5 +239,5 @@ TEST_CASE("a cancelled job stops") {
   const World world = bumpy_world(5, 1);
   const std::vector<lod::Target> targets = counts({100});
   mesh::ThreadPool pool(0);
-  CHECK_THROWS_AS(static_cast<void>(lod::simplify(world.full(), targets, world.gutter(), pool, progress)), Error);
+  CHECK_THROWS_AS(static_cast<void>(lod::simplify(world.full(), targets, pool, progress)), Error);
 }
