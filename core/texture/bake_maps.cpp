@@ -203,15 +203,15 @@ private:
     return detail_frames_.at(w).to_space(Float4{scale_ * (2 * c[0] - 1), scale_ * (2 * c[1] - 1), 2 * c[2] - 1, 0});
   }
 
-  const NormalSource& source_;
-  std::optional<FieldReader> frames_;
-  bool own_frames_ = false; // those of the triangles that the map shows
-  CornerFrames corners_;    // of the triangle in work, with own_frames_
-  Picture& image_;
-  float scale_ = 0;
-  Corners normals_{}; // of the triangle in work, without detail
-  TextureReader::Footprint footprint_;
+  CornerFrames corners_; // of the triangle in work, with own_frames_
   CornerFrames detail_frames_;
+  Corners normals_{}; // without detail
+  TextureReader::Footprint footprint_;
+  const NormalSource& source_;
+  Picture& image_;
+  std::optional<FieldReader> frames_;
+  float scale_ = 0;
+  bool own_frames_ = false; // those of the triangles that the map shows
 };
 
 class PositionShader {
