@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace orbis {
 namespace {
@@ -29,25 +28,29 @@ const asset::Attribute* color_of(const asset::Primitive& p) {
 
 CornerValues::CornerValues(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut,
                            mesh::ThreadPool& pool)
-    : asset_(asset), surface_(surface), cut_(cut), pool_(pool), shown_(cut.triangles.size()) {
-  std::iota(shown_.begin(), shown_.end(), 0U);
-}
+    : asset_(asset), surface_(surface), cut_(cut), pool_(pool),
+      of_surface_(surface.primitive_of.size(), asset.primitives.size(),
+                  [&](std::uint32_t t) { return surface.primitive_of[t]; }),
+      of_cut_(cut.triangles.size(), asset.primitives.size(), [&](std::uint32_t t) { return primitive(t); }) {}
 
 std::array<double, 3> CornerValues::weights_in_parent(std::size_t t, std::size_t k) const {
   return texture::weights_on(cut_.parent[t], surface_.mesh.triangles, cut_.vertices[cut_.triangles[t][k]]);
 }
 
-// Calls fill(t, value) for every triangle shown.
-template <class Value, class Fill> std::vector<Value> CornerValues::gather(Fill fill) const {
-  std::vector<Value> out(cut_.triangles.size());
+// Calls fill(t, value) for every triangle shown, whose value is zero.
+template <class Value, class Fill> std::span<const Value> CornerValues::gather(std::vector<Value>& out, Fill fill) {
+  out.resize(cut_.triangles.size());
   pool_.for_blocks(shown_.size(), triangles_a_block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) fill(shown_[i], out[shown_[i]]);
+    for (std::size_t i = begin; i < end; ++i) {
+      out[shown_[i]] = {};
+      fill(shown_[i], out[shown_[i]]);
+    }
   });
   return out;
 }
 
-std::vector<texture::CornerUv> CornerValues::uv(std::span<const asset::Attribute* const> uv_of) const {
-  return gather<texture::CornerUv>([&](std::size_t t, texture::CornerUv& out) {
+std::span<const texture::CornerUv> CornerValues::uv(std::span<const asset::Attribute* const> uv_of) {
+  return gather(uv_, [&](std::size_t t, texture::CornerUv& out) {
     const asset::Attribute* attribute = uv_of[primitive(t)];
     for (std::size_t k = 0; attribute != nullptr && k < 3; ++k) {
       const auto [u, v] = at<2>(*attribute, t, k);
@@ -56,15 +59,15 @@ std::vector<texture::CornerUv> CornerValues::uv(std::span<const asset::Attribute
   });
 }
 
-std::vector<std::array<Vec3f, 3>> CornerValues::positions() const {
-  return gather<std::array<Vec3f, 3>>([&](std::size_t t, std::array<Vec3f, 3>& out) {
+std::span<const std::array<Vec3f, 3>> CornerValues::positions() {
+  return gather(positions_, [&](std::size_t t, std::array<Vec3f, 3>& out) {
     const asset::Attribute& attribute = *asset_.primitives[primitive(t)].find("POSITION");
     for (std::size_t k = 0; k < 3; ++k) out[k] = vector_of(at<3>(attribute, t, k));
   });
 }
 
-std::vector<std::array<Vec3f, 3>> CornerValues::normals() const {
-  return gather<std::array<Vec3f, 3>>([&](std::size_t t, std::array<Vec3f, 3>& out) {
+std::span<const std::array<Vec3f, 3>> CornerValues::normals() {
+  return gather(normals_, [&](std::size_t t, std::array<Vec3f, 3>& out) {
     const asset::Attribute* attribute = asset_.primitives[primitive(t)].find("NORMAL");
     if (attribute != nullptr) {
       for (std::size_t k = 0; k < 3; ++k) out[k] = vector_of(at<3>(*attribute, t, k));
@@ -76,8 +79,8 @@ std::vector<std::array<Vec3f, 3>> CornerValues::normals() const {
   });
 }
 
-std::vector<texture::CornerColor> CornerValues::colors(const std::vector<bool>& wanted) const {
-  return gather<texture::CornerColor>([&](std::size_t t, texture::CornerColor& out) {
+std::span<const texture::CornerColor> CornerValues::colors(const std::vector<bool>& wanted) {
+  return gather(colors_, [&](std::size_t t, texture::CornerColor& out) {
     const std::uint32_t p = primitive(t);
     const asset::Attribute* attribute = wanted[p] ? color_of(asset_.primitives[p]) : nullptr;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -90,13 +93,13 @@ std::vector<texture::CornerColor> CornerValues::colors(const std::vector<bool>& 
   });
 }
 
-std::vector<std::array<Tangent, 3>> CornerValues::tangents(std::span<const NormalUv> uv_of) const {
+std::span<const std::array<Tangent, 3>> CornerValues::tangents(std::span<const NormalUv> uv_of) {
   const auto given = [&](std::uint32_t p) {
     const asset::Attribute* tangent = asset_.primitives[p].find("TANGENT");
     return tangent != nullptr && tangent->components == 4 && asset_.primitives[p].find("NORMAL") != nullptr ? tangent
                                                                                                             : nullptr;
   };
-  auto out = gather<std::array<Tangent, 3>>([&](std::size_t t, std::array<Tangent, 3>& corners) {
+  const auto out = gather(tangents_, [&](std::size_t t, std::array<Tangent, 3>& corners) {
     const asset::Attribute* attribute = given(primitive(t));
     for (std::size_t k = 0; attribute != nullptr && k < 3; ++k) {
       const auto v = at<4>(*attribute, t, k);
@@ -105,22 +108,19 @@ std::vector<std::array<Tangent, 3>> CornerValues::tangents(std::span<const Norma
     }
   });
   for (std::uint32_t p = 0; p < uv_of.size(); ++p) {
-    if (uv_of[p].uv != nullptr && given(p) == nullptr) add_mikktspace(p, uv_of[p], out);
+    if (uv_of[p].uv != nullptr && given(p) == nullptr) add_mikktspace(p, uv_of[p]);
   }
   return out;
 }
 
-// On the input's own triangles, as a renderer of the input does it; then carried over to the pieces.
-void CornerValues::add_mikktspace(std::uint32_t p, const NormalUv& uv, std::vector<std::array<Tangent, 3>>& out) const {
+// By triangle of the surface that is the primitive's, as a renderer of the input does it.
+std::vector<std::array<Tangent, 3>> CornerValues::mikktspace(std::uint32_t p, const NormalUv& uv) const {
   const asset::Primitive& source = asset_.primitives[p];
   const std::vector<Vec3f> positions = source.positions();
   const asset::Attribute* normal = source.find("NORMAL");
-  std::vector<std::uint32_t> number(surface_.mesh.triangles.size()); // triangle of the surface -> of the list below
   std::vector<Vec3f> at_position, at_normal;
   std::vector<Vec2f> at_uv;
-  for (std::size_t s = 0; s < surface_.mesh.triangles.size(); ++s) {
-    if (surface_.primitive_of[s] != p) continue;
-    number[s] = static_cast<std::uint32_t>(at_uv.size() / 3);
+  for (const std::uint32_t s : of_surface_[p]) {
     std::array<std::uint32_t, 3> corner{};
     for (std::size_t k = 0; k < 3; ++k) corner[k] = surface_.corners[s][k] - surface_.first_vertex[p];
     const Vec3d a(positions[corner[0]]), b(positions[corner[1]]), c(positions[corner[2]]);
@@ -136,15 +136,21 @@ void CornerValues::add_mikktspace(std::uint32_t p, const NormalUv& uv, std::vect
   }
   std::vector<mesh::Triangle> triangles(at_uv.size() / 3);
   for (std::uint32_t t = 0; t < triangles.size(); ++t) triangles[t] = {3 * t, 3 * t + 1, 3 * t + 2};
-  const auto corners = texture::corner_tangents(at_position, at_normal, at_uv, triangles);
-  for (const std::uint32_t t : shown_) {
-    if (primitive(t) != p) continue;
-    const std::array<Tangent, 3>& from = corners[number[cut_.parent[t]]];
+  return texture::corner_tangents(at_position, at_normal, at_uv, triangles);
+}
+
+// Carried over from the input's triangles to the pieces.
+void CornerValues::add_mikktspace(std::uint32_t p, const NormalUv& uv) {
+  const std::vector<std::array<Tangent, 3>> corners = mikktspace(p, uv);
+  const std::span<const std::uint32_t> sources = of_surface_[p];
+  for (const std::uint32_t t : of_cut_[p]) {
+    const auto number = std::ranges::lower_bound(sources, cut_.parent[t]) - sources.begin();
+    const std::array<Tangent, 3>& from = corners[static_cast<std::size_t>(number)];
     for (std::size_t k = 0; k < 3; ++k) {
       const std::array<double, 3> w = weights_in_parent(t, k);
       Vec3d sum;
       for (std::size_t j = 0; j < 3; ++j) sum += Vec3d{from[j].x, from[j].y, from[j].z} * w[j];
-      out[t][k] = {static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z), from[0].w};
+      tangents_[t][k] = {static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z), from[0].w};
     }
   }
 }

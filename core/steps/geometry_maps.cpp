@@ -36,7 +36,13 @@ std::vector<CornerValues::NormalUv> normal_uv(const asset::Asset& asset, const S
 
 } // namespace
 
-GeometryMaps::GeometryMaps(const BakeJob& job, PageBaking& page) : job_(job), page_(page) {
+GeometryMaps::GeometryMaps(const BakeJob& job, PageBaking& page)
+    : job_(job), page_(page), frames_(job.shown.surface, job.shown.cut) {
+  levels_.reserve(job.levels.size());
+  for (const DetailLevel& level : job.levels) {
+    const std::size_t vertices = level.level.mesh.vertices.size();
+    levels_.push_back({MeshByPage(level.level.mesh), std::vector<Vec3f>(vertices), std::vector<Vec3f>(vertices)});
+  }
   if (job.wants(Map::normal) || job.options().maps.names(Map::object_normal)) {
     normal_ = textures_of(job.asset, job.delivery, TextureSlot::normal, job.report);
   }
@@ -50,12 +56,12 @@ void GeometryMaps::bake_normals() {
   const std::vector<bool> wanted = takes_normal_map(textures), of_levels = levels_take_normal_map(wanted);
   if (!any(wanted) && !any(of_levels) && !objects) return;
 
-  const CornerValues& values = page_.values();
-  const std::vector<std::array<Vec3f, 3>> normals = values.normals();
-  const std::vector<texture::CornerUv> uv = page_.source_uv(textures);
+  CornerValues& values = page_.values();
+  const std::span<const std::array<Vec3f, 3>> normals = values.normals();
+  const std::span<const texture::CornerUv> uv = page_.source_uv(textures);
   const std::vector<texture::TextureSource> sources = sources_of(textures, images);
   const texture::TextureReader reader(page_.map(), values.shown(), uv, page_.primitive_of(), sources, Encoding::linear);
-  std::vector<std::array<texture::Tangent, 3>> old_frames;
+  std::span<const std::array<texture::Tangent, 3>> old_frames;
   if (any(textures)) old_frames = values.tangents(normal_uv(job_.asset, textures));
   std::vector<float> scales(textures.size());
   for (std::size_t p = 0; p < scales.size(); ++p) scales[p] = textures[p] ? textures[p]->scale : 0;
@@ -64,7 +70,9 @@ void GeometryMaps::bake_normals() {
 
   if (objects) add_normals("object_normal", source, nullptr, false);
   if (any(wanted)) {
-    const TangentFrames frames = frames_of_full(wanted, job_.delivery, job_.report);
+    const std::vector<std::uint32_t> triangles = delivered_triangles(wanted);
+    const TangentFrames& frames = frames_.find(triangles, job_.delivery);
+    deliver_frames(triangles, frames, wanted);
     const std::uint32_t number = add_normals("normal", source, frames);
     for (std::size_t p = 0; p < wanted.size(); ++p) {
       if (wanted[p]) job_.delivery.primitives[p].textures[TextureSlot::normal] = number;
@@ -73,32 +81,58 @@ void GeometryMaps::bake_normals() {
   if (any(of_levels)) bake_normals_of_levels(source, of_levels);
 }
 
-TangentFrames GeometryMaps::frames_of_full(const std::vector<bool>& wanted, Delivery& delivery, Report& report) const {
-  return add_tangent_frames(job_.shown.asset, job_.shown.surface, job_.shown.cut, wanted, delivery, report);
+// Those on the page whose primitives are wanted.
+std::vector<std::uint32_t> GeometryMaps::delivered_triangles(const std::vector<bool>& wanted) const {
+  std::vector<std::uint32_t> out;
+  for (const std::uint32_t t : page_.delivered_map().shown())
+    if (wanted[job_.shown.surface.primitive_of[job_.shown.cut.parent[t]]]) out.push_back(t);
+  return out;
+}
+
+void GeometryMaps::deliver_frames(std::span<const std::uint32_t> triangles, const TangentFrames& frames,
+                                  const std::vector<bool>& wanted) {
+  const std::vector<FrameAttributes> attributes =
+      add_frame_attributes(job_.shown.asset, wanted, job_.delivery, job_.report);
+  for (const std::uint32_t t : triangles) {
+    for (const mesh::Index v : job_.shown.cut.triangles[t]) {
+      const OutputVertex o = job_.delivery.of_cut_vertex[v];
+      const FrameAttributes& primitive = attributes[o.primitive];
+      if (primitive.normal_is_new) {
+        primitive.set(o.vertex, {frames.normals[v], frames.tangents[v]});
+      } else {
+        primitive.set_tangent(o.vertex, frames.tangents[v]);
+      }
+    }
+  }
 }
 
 texture::FrameField GeometryMaps::field_of(const TangentFrames& frames) const {
   return {&page_.delivered_map(), job_.shown.cut.triangles, frames.normals, frames.tangents};
 }
 
-// One map for all levels, in frames that all of them can follow (smooth_frames.h).
-void GeometryMaps::bake_normals_of_levels(const texture::NormalSource& source, const std::vector<bool>& wanted) {
-  const texture::CutMesh& cut = job_.shown.cut;
+// The levels' vertices take the smooth frames.
+void GeometryMaps::follow(const texture::SmoothFrames& smooth, const std::vector<bool>& wanted) {
   Report already_noted; // of the full surface
-  Delivery full = job_.delivery;
-  TangentFrames frames = frames_of_full(wanted, full, already_noted);
-  const texture::SmoothFrames smooth(cut, page_.page(), field_of(frames));
-  for (DetailLevel& level : job_.levels) {
-    add_tangent_frames(job_.shown.asset, job_.shown.surface, level.level.mesh, wanted, level.delivery, already_noted);
-    const texture::CutMesh& mesh = level.level.mesh;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+  for (std::size_t i = 0; i < job_.levels.size(); ++i) {
+    const texture::CutMesh& mesh = job_.levels[i].level.mesh;
+    Delivery& delivery = job_.levels[i].delivery;
+    const std::vector<FrameAttributes> attributes =
+        add_frame_attributes(job_.shown.asset, wanted, delivery, already_noted);
+    for (const std::uint32_t t : levels_[i].by_page.triangles(page_.page())) {
       for (const mesh::Index v : mesh.triangles[t]) {
-        const OutputVertex o = level.delivery.of_cut_vertex[v];
-        if (wanted[o.primitive])
-          set_frame(level.delivery.primitives[o.primitive], o.vertex, smooth.at(mesh.chart[t], mesh.vertices[v].uv));
+        const OutputVertex o = delivery.of_cut_vertex[v];
+        if (wanted[o.primitive]) attributes[o.primitive].set(o.vertex, smooth.at(mesh.chart[t], mesh.vertices[v].uv));
       }
     }
   }
+}
+
+// One map for all levels, in frames that all of them can follow (smooth_frames.h).
+void GeometryMaps::bake_normals_of_levels(const texture::NormalSource& source, const std::vector<bool>& wanted) {
+  const texture::CutMesh& cut = job_.shown.cut;
+  TangentFrames& frames = frames_.find(delivered_triangles(wanted), job_.delivery);
+  const texture::SmoothFrames smooth(cut, page_.charts(), field_of(frames));
+  follow(smooth, wanted);
   for (const std::uint32_t t : page_.delivered_map().shown()) {
     for (const mesh::Index v : cut.triangles[t]) {
       const texture::VertexFrame frame = smooth.at(cut.chart[t], cut.vertices[v].uv);
@@ -181,8 +215,9 @@ void GeometryMaps::bake_ambient_occlusion() {
   const texture::TexelMap map(page_.mesh(), std::max(whole.width() / step, 1U), std::max(whole.height() / step, 1U),
                               page_.pool());
   if (!trees_) trees_ = occlusion_trees(job_.surface, job_.cut);
+  if (!two_sided_) two_sided_ = two_sided_triangles();
   const Image image = texture::bake_occlusion(map, page_.values().positions(), page_.values().normals(),
-                                              {trees_->trees, trees_->tree_of}, two_sided_triangles(), trees_->offset,
+                                              {trees_->trees, trees_->tree_of}, *two_sided_, trees_->offset,
                                               job_.progress, page_.pool());
   const std::uint32_t number = page_.add(image, MapKind::data, "ambient_occlusion");
   for (std::size_t p = 0; p < job_.asset.primitives.size(); ++p) {
@@ -193,10 +228,10 @@ void GeometryMaps::bake_ambient_occlusion() {
 
 void GeometryMaps::bake_positions() {
   if (!job_.options().maps.names(Map::position)) return;
-  const texture::Box box = box_of(job_.surface.mesh.positions);
-  page_.add(texture::bake_positions(page_.map(), page_.values().positions(), box, job_.progress, page_.pool()),
+  if (!box_) box_ = box_of(job_.surface.mesh.positions);
+  page_.add(texture::bake_positions(page_.map(), page_.values().positions(), *box_, job_.progress, page_.pool()),
             MapKind::data, "position", false);
-  page_.last_map().range = {box.low, box.high - box.low};
+  page_.last_map().range = {box_->low, box_->high - box_->low};
 }
 
 void GeometryMaps::bake_displacements() {
@@ -208,23 +243,26 @@ void GeometryMaps::bake_displacements() {
                                  std::string(name_of(Map::displacement))});
   }
   for (std::size_t i = 0; i < job_.levels.size(); ++i)
-    bake_displacement_of(job_.levels[i], "displacement_lod" + std::to_string(i + 1));
+    bake_displacement_of(i, "displacement_lod" + std::to_string(i + 1));
 }
 
-void GeometryMaps::bake_displacement_of(const DetailLevel& level, const std::string& name) {
+void GeometryMaps::bake_displacement_of(std::size_t number, const std::string& name) {
+  const DetailLevel& level = job_.levels[number];
+  LevelOnPages& coarse = levels_[number];
   const texture::CutMesh& mesh = level.level.mesh;
-  const PageOfMesh coarse(mesh, page_.page(), page_.pool());
-  std::vector<Vec3f> positions(mesh.vertices.size()), normals(mesh.vertices.size());
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    const OutputVertex o = level.delivery.of_cut_vertex[v];
-    const asset::NewPrimitive& primitive = level.delivery.primitives[o.primitive];
-    positions[v] = Vec3f(asset::vector_at(*primitive.find("POSITION"), o.vertex));
-    if (const asset::Attribute* normal = primitive.find("NORMAL"))
-      normals[v] = Vec3f(asset::vector_at(*normal, o.vertex));
+  for (const std::uint32_t t : coarse.by_page.triangles(page_.page())) {
+    for (const mesh::Index v : mesh.triangles[t]) {
+      const OutputVertex o = level.delivery.of_cut_vertex[v];
+      const asset::NewPrimitive& primitive = level.delivery.primitives[o.primitive];
+      coarse.positions[v] = Vec3f(asset::vector_at(*primitive.find("POSITION"), o.vertex));
+      if (const asset::Attribute* normal = primitive.find("NORMAL"))
+        coarse.normals[v] = Vec3f(asset::vector_at(*normal, o.vertex));
+    }
   }
+  const texture::TexelMap map = coarse.by_page.map(page_.page(), page_.pool());
   const texture::Displacement baked =
       texture::bake_displacement(page_.map(), page_.values().positions(), job_.cut.chart,
-                                 {&coarse.map, &mesh, positions, normals}, job_.progress, page_.pool());
+                                 {&map, &mesh, coarse.positions, coarse.normals}, job_.progress, page_.pool());
   page_.add(baked.image, MapKind::data, name, false);
   page_.last_map().range = {{baked.offset, 0, 0}, {baked.scale, 0, 0}};
 }

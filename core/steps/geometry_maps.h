@@ -2,9 +2,11 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "core/steps/mesh_by_page.h"
 #include "core/steps/occlusion_trees.h"
 #include "core/steps/page_baking.h"
 #include "core/steps/tangent_frames.h"
@@ -28,21 +30,36 @@ public:
   void bake_displacements();
 
 private:
-  [[nodiscard]] std::vector<bool> two_sided_triangles() const; // by triangle of the cut
-  void bake_displacement_of(const DetailLevel& level, const std::string& name);
+  [[nodiscard]] std::vector<bool> two_sided_triangles() const;
+  void bake_displacement_of(std::size_t number, const std::string& name);
   [[nodiscard]] std::vector<bool> takes_normal_map(const SlotTextures& textures) const;
   [[nodiscard]] std::vector<bool> levels_take_normal_map(const std::vector<bool>& full) const;
-  [[nodiscard]] TangentFrames frames_of_full(const std::vector<bool>& wanted, Delivery& delivery, Report& report) const;
+  [[nodiscard]] std::vector<std::uint32_t> delivered_triangles(const std::vector<bool>& wanted) const;
+  void deliver_frames(std::span<const std::uint32_t> triangles, const TangentFrames& frames,
+                      const std::vector<bool>& wanted);
   [[nodiscard]] texture::FrameField field_of(const TangentFrames& frames) const;
+  void follow(const texture::SmoothFrames& smooth, const std::vector<bool>& wanted);
   void bake_normals_of_levels(const texture::NormalSource& source, const std::vector<bool>& wanted);
   std::uint32_t add_normals(const std::string& name, const texture::NormalSource& source, const TangentFrames& frames);
   std::uint32_t add_normals(const std::string& name, const texture::NormalSource& source,
                             const texture::FrameField* frames, bool shown);
 
+  // A level of detail, and what displacements are measured from: its vertices as delivered, those of the page that is
+  // open.
+  struct LevelOnPages {
+    MeshByPage by_page;
+    std::vector<Vec3f> positions, normals;
+  };
+
   const BakeJob& job_;
   PageBaking& page_;
   SlotTextures normal_;
+  FrameFinder frames_;
+  std::vector<LevelOnPages> levels_;
+  // Made when needed.
   std::optional<OcclusionTrees> trees_;
+  std::optional<std::vector<bool>> two_sided_; // by triangle of the cut
+  std::optional<texture::Box> box_;
 };
 
 } // namespace orbis

@@ -158,10 +158,10 @@ void MaterialMaps::show(const SlotTextures& textures, TextureSlot slot, std::uin
 
 Image MaterialMaps::resample(const SlotTextures& textures, const DecodedImages& images,
                              const std::vector<bool>& colored, Encoding encoding) {
-  const std::vector<texture::CornerUv> uv = page_.source_uv(textures);
+  const std::span<const texture::CornerUv> uv = page_.source_uv(textures);
   const std::vector<texture::TextureSource> sources = sources_of(textures, images);
   const texture::TextureReader reader(page_.map(), page_.values().shown(), uv, page_.primitive_of(), sources, encoding);
-  std::vector<texture::CornerColor> colors;
+  std::span<const texture::CornerColor> colors;
   if (any(colored)) colors = page_.values().colors(colored);
   const bool alpha = encoding == Encoding::srgb && (has_alpha(sources) || colors_have_alpha(colored));
   return texture::bake_texture(page_.map(), reader, colors, encoding, alpha, job_.progress, page_.pool());

@@ -3,24 +3,6 @@
 #include <algorithm>
 
 namespace orbis {
-namespace {
-
-std::vector<Vec2f> uv_of(const texture::CutMesh& cut) {
-  std::vector<Vec2f> out;
-  out.reserve(cut.vertices.size());
-  for (const texture::CutVertex& v : cut.vertices) out.push_back(v.uv);
-  return out;
-}
-
-std::vector<std::uint32_t> triangles_on(const texture::CutMesh& cut, std::uint32_t page) {
-  std::vector<std::uint32_t> out;
-  for (std::uint32_t t = 0; t < cut.triangles.size(); ++t) {
-    if (cut.page_of(t) == page) out.push_back(t);
-  }
-  return out;
-}
-
-} // namespace
 
 bool any(const SlotTextures& textures) {
   return std::ranges::any_of(textures, [](const auto& t) { return t.has_value(); });
@@ -28,22 +10,18 @@ bool any(const SlotTextures& textures) {
 bool any(const std::vector<bool>& flags) { return std::ranges::find(flags, true) != flags.end(); }
 
 PageBaking::PageBaking(const BakeJob& job)
-    : job_(job), pool_(job.options().threads), values_(job.asset, job.surface, job.cut, pool_), uv_(uv_of(job.cut)) {
+    : job_(job), pool_(job.options().threads), values_(job.asset, job.surface, job.cut, pool_), by_page_(job.cut) {
   primitive_of_.reserve(job.cut.triangles.size());
   for (std::size_t t = 0; t < job.cut.triangles.size(); ++t) primitive_of_.push_back(values_.primitive(t));
+  if (&job.shown.cut != &job.cut) delivered_by_page_.emplace(job.shown.cut);
 }
 
 void PageBaking::open(std::uint32_t page) {
   page_ = page;
-  values_.show(triangles_on(job_.cut, page));
-  map_.emplace(mesh(), job_.cut.pages[page].width, job_.cut.pages[page].height, pool_);
-  delivered_.reset();
-  if (&job_.shown.cut != &job_.cut) delivered_.emplace(job_.shown.cut, page, pool_);
+  values_.show(by_page_.triangles(page));
+  map_.emplace(by_page_.map(page, pool_));
+  if (delivered_by_page_) delivered_map_.emplace(delivered_by_page_->map(page, pool_));
 }
-
-PageOfMesh::PageOfMesh(const texture::CutMesh& cut, std::uint32_t page, mesh::ThreadPool& pool)
-    : uv(uv_of(cut)), triangles(triangles_on(cut, page)),
-      map({uv, cut.triangles, triangles}, cut.pages[page].width, cut.pages[page].height, pool) {}
 
 bool PageBaking::shows(std::size_t primitive) const {
   return !job_.delivery.primitives[primitive].indices.empty() && job_.delivery.page_of[primitive] == page_;
@@ -57,7 +35,7 @@ SlotTextures PageBaking::shown(const SlotTextures& textures) const {
   return out;
 }
 
-std::vector<texture::CornerUv> PageBaking::source_uv(const SlotTextures& textures) const {
+std::span<const texture::CornerUv> PageBaking::source_uv(const SlotTextures& textures) {
   std::vector<const asset::Attribute*> uv_of(textures.size());
   for (std::size_t p = 0; p < textures.size(); ++p) {
     if (textures[p]) uv_of[p] = job_.asset.primitives[p].find(textures[p]->uv);

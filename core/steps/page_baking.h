@@ -12,6 +12,7 @@
 #include "core/steps/corner_values.h"
 #include "core/steps/encode_map.h"
 #include "core/steps/material_sources.h"
+#include "core/steps/mesh_by_page.h"
 #include "core/texture/texel_map.h"
 #include "core/texture/texture_reader.h"
 
@@ -38,14 +39,6 @@ struct BakeJob {
 [[nodiscard]] bool any(const SlotTextures& textures);
 [[nodiscard]] bool any(const std::vector<bool>& flags);
 
-// Which triangle of a mesh on the atlas each texel of a page shows.
-struct PageOfMesh {
-  std::vector<Vec2f> uv;
-  std::vector<std::uint32_t> triangles;
-  texture::TexelMap map;
-  PageOfMesh(const texture::CutMesh& cut, std::uint32_t page, mesh::ThreadPool& pool);
-};
-
 class PageBaking {
 public:
   // Keeps a reference to the job. No page is open yet.
@@ -57,9 +50,11 @@ public:
   [[nodiscard]] std::uint32_t page() const { return page_; }
   [[nodiscard]] const texture::TexelMap& map() const { return *map_; }
   // The same page by the triangles that are delivered.
-  [[nodiscard]] const texture::TexelMap& delivered_map() const { return delivered_ ? delivered_->map : *map_; }
-  [[nodiscard]] texture::PageMesh mesh() const { return {uv_, job_.cut.triangles, values_.shown()}; }
-  [[nodiscard]] const CornerValues& values() const { return values_; }
+  [[nodiscard]] const texture::TexelMap& delivered_map() const { return delivered_map_ ? *delivered_map_ : *map_; }
+  [[nodiscard]] texture::PageMesh mesh() const { return by_page_.mesh(page_); }
+  // The charts of the page.
+  [[nodiscard]] std::span<const std::uint32_t> charts() const { return by_page_.charts(page_); }
+  [[nodiscard]] CornerValues& values() { return values_; }
   [[nodiscard]] std::span<const std::uint32_t> primitive_of() const { return primitive_of_; }
   [[nodiscard]] mesh::ThreadPool& pool() { return pool_; }
 
@@ -67,7 +62,7 @@ public:
   [[nodiscard]] bool shows(std::size_t primitive) const;
   [[nodiscard]] SlotTextures shown(const SlotTextures& textures) const;
   // The coordinates through which the textures are read, by delivered triangle.
-  [[nodiscard]] std::vector<texture::CornerUv> source_uv(const SlotTextures& textures) const;
+  [[nodiscard]] std::span<const texture::CornerUv> source_uv(const SlotTextures& textures);
 
   // Every map becomes a file and an entry of the report; what materials show becomes an image of the result too, whose
   // number is returned. name: "normal"; with several pages it becomes "normal-2".
@@ -91,10 +86,10 @@ private:
   mesh::ThreadPool pool_;
   CornerValues values_;
   std::vector<std::uint32_t> primitive_of_; // by delivered triangle
-  std::vector<Vec2f> uv_;                   // by cut vertex
+  MeshByPage by_page_;
+  std::optional<MeshByPage> delivered_by_page_; // where these triangles are others
   std::uint32_t page_ = 0;
-  std::optional<texture::TexelMap> map_;
-  std::optional<PageOfMesh> delivered_; // where these triangles are others
+  std::optional<texture::TexelMap> map_, delivered_map_;
   BakedMaps out_;
 };
 

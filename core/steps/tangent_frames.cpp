@@ -36,23 +36,6 @@ Vec3f get_vector(const Attribute& attribute, std::size_t v) {
           static_cast<float>(attribute.get(v, 2))};
 }
 
-void add_smooth_normals(const Surface& surface, const texture::CutMesh& cut, const std::vector<bool>& lacking,
-                        Delivery& delivery) {
-  if (std::ranges::find(lacking, true) == lacking.end()) return;
-  for (std::size_t p = 0; p < lacking.size(); ++p) {
-    if (!lacking[p]) continue;
-    Attribute& normal = float_attribute(delivery.primitives[p], "NORMAL", 3);
-    for (std::size_t v = 0; v < normal.count(); ++v) set_vector(normal, v, {0, 0, 1}); // of triangles that ride along
-  }
-  const std::vector<Vec3d> normals = smooth_normals(surface.mesh);
-  for (std::size_t v = 0; v < cut.vertices.size(); ++v) {
-    const OutputVertex o = delivery.of_cut_vertex[v];
-    if (!lacking[o.primitive]) continue;
-    const Vec3d normal = texture::interpolated(normals, surface.mesh.triangles, cut.vertices[v]);
-    set_vector(*delivery.primitives[o.primitive].find("NORMAL"), o.vertex, unit(normal));
-  }
-}
-
 void drop_tangent_targets(const asset::Primitive& input, asset::NewPrimitive& primitive, Report& report) {
   bool dropped = false;
   for (auto& target : primitive.targets) {
@@ -83,61 +66,77 @@ std::vector<Vec3d> smooth_normals(const mesh::TriangleMesh& mesh) {
   return sum;
 }
 
-TangentFrames add_tangent_frames(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut,
-                                 const std::vector<bool>& wanted, Delivery& delivery, Report& report) {
-  std::vector<bool> lacking(wanted.size());
-  for (std::size_t p = 0; p < wanted.size(); ++p) {
-    lacking[p] = wanted[p] && delivery.primitives[p].find("NORMAL") == nullptr;
-  }
-  add_smooth_normals(surface, cut, lacking, delivery);
+FrameFinder::FrameFinder(const Surface& surface, const texture::CutMesh& cut) : surface_(surface), cut_(cut) {
+  frames_.normals.resize(cut.vertices.size());
+  frames_.tangents.resize(cut.vertices.size());
+}
 
-  TangentFrames out;
-  out.normals.resize(cut.vertices.size());
-  out.tangents.resize(cut.vertices.size());
-  std::vector<Vec3f> positions(cut.vertices.size());
-  std::vector<Vec2f> uv(cut.vertices.size());
-  for (std::size_t v = 0; v < cut.vertices.size(); ++v) {
-    const OutputVertex o = delivery.of_cut_vertex[v];
-    if (!wanted[o.primitive]) continue;
-    out.normals[v] = get_vector(*delivery.primitives[o.primitive].find("NORMAL"), o.vertex);
-    positions[v] = get_vector(*delivery.primitives[o.primitive].find("POSITION"), o.vertex);
-    uv[v] = cut.vertices[v].uv;
-  }
-  std::vector<mesh::Triangle> triangles;
-  for (std::size_t t = 0; t < cut.triangles.size(); ++t) {
-    if (wanted[surface.primitive_of[cut.parent[t]]]) triangles.push_back(cut.triangles[t]);
-  }
-  const auto corners = texture::corner_tangents(positions, out.normals, uv, triangles);
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) out.tangents[triangles[t][k]] = corners[t][k];
-  }
+Vec3f FrameFinder::smooth_normal(const texture::CutVertex& v) {
+  if (!smooth_) smooth_ = smooth_normals(surface_.mesh);
+  return unit(texture::interpolated(*smooth_, surface_.mesh.triangles, v));
+}
 
-  std::vector<Attribute*> attributes(wanted.size());
-  for (std::size_t p = 0; p < wanted.size(); ++p) {
-    if (!wanted[p]) continue;
-    attributes[p] = &float_attribute(delivery.primitives[p], "TANGENT", 4);
-    // Vertices of triangles that only ride along have no place of their own on the surface: any frame will do.
-    for (std::size_t v = 0; v < attributes[p]->count(); ++v) {
-      set_vector(*attributes[p], v, {1, 0, 0});
-      attributes[p]->set(v, 3, 1);
-    }
-    drop_tangent_targets(asset.primitives[p], delivery.primitives[p], report);
-  }
-  for (std::size_t v = 0; v < cut.vertices.size(); ++v) {
-    const OutputVertex o = delivery.of_cut_vertex[v];
-    if (!wanted[o.primitive]) continue;
-    const texture::Tangent& t = out.tangents[v];
-    set_vector(*attributes[o.primitive], o.vertex, {t.x, t.y, t.z});
-    attributes[o.primitive]->set(o.vertex, 3, double{t.w});
-  }
+// Ascending.
+std::vector<mesh::Index> FrameFinder::vertices_of(std::span<const std::uint32_t> part) const {
+  std::vector<mesh::Index> out;
+  out.reserve(3 * part.size());
+  for (const std::uint32_t t : part) out.insert(out.end(), cut_.triangles[t].begin(), cut_.triangles[t].end());
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 
-void set_frame(asset::NewPrimitive& primitive, std::size_t vertex, const texture::VertexFrame& frame) {
-  set_vector(*primitive.find("NORMAL"), vertex, frame.normal);
-  Attribute& tangent = *primitive.find("TANGENT");
-  set_vector(tangent, vertex, {frame.tangent.x, frame.tangent.y, frame.tangent.z});
-  tangent.set(vertex, 3, double{frame.tangent.w});
+TangentFrames& FrameFinder::find(std::span<const std::uint32_t> part, const Delivery& delivery) {
+  const std::vector<mesh::Index> vertices = vertices_of(part);
+  std::vector<Vec3f> positions(vertices.size()), normals(vertices.size());
+  std::vector<Vec2f> uv(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const OutputVertex o = delivery.of_cut_vertex[vertices[i]];
+    const asset::NewPrimitive& primitive = delivery.primitives[o.primitive];
+    const Attribute* normal = primitive.find("NORMAL");
+    normals[i] = normal != nullptr ? get_vector(*normal, o.vertex) : smooth_normal(cut_.vertices[vertices[i]]);
+    positions[i] = get_vector(*primitive.find("POSITION"), o.vertex);
+    uv[i] = cut_.vertices[vertices[i]].uv;
+    frames_.normals[vertices[i]] = normals[i];
+  }
+  std::vector<mesh::Triangle> triangles(part.size());
+  for (std::size_t t = 0; t < part.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      triangles[t][k] =
+          static_cast<mesh::Index>(std::ranges::lower_bound(vertices, cut_.triangles[part[t]][k]) - vertices.begin());
+  const auto corners = texture::corner_tangents(positions, normals, uv, triangles);
+  for (std::size_t t = 0; t < part.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) frames_.tangents[cut_.triangles[part[t]][k]] = corners[t][k];
+  return frames_;
+}
+
+void FrameAttributes::set(std::size_t vertex, const texture::VertexFrame& frame) const {
+  set_vector(*normal, vertex, frame.normal);
+  set_tangent(vertex, frame.tangent);
+}
+
+void FrameAttributes::set_tangent(std::size_t vertex, const texture::Tangent& t) const {
+  set_vector(*tangent, vertex, {t.x, t.y, t.z});
+  tangent->set(vertex, 3, double{t.w});
+}
+
+std::vector<FrameAttributes> add_frame_attributes(const asset::Asset& asset, const std::vector<bool>& wanted,
+                                                  Delivery& delivery, Report& report) {
+  std::vector<FrameAttributes> out(wanted.size());
+  for (std::size_t p = 0; p < wanted.size(); ++p) {
+    if (!wanted[p]) continue;
+    asset::NewPrimitive& primitive = delivery.primitives[p];
+    out[p].normal_is_new = primitive.find("NORMAL") == nullptr;
+    if (out[p].normal_is_new) float_attribute(primitive, "NORMAL", 3);
+    out[p].tangent = &float_attribute(primitive, "TANGENT", 4);
+    out[p].normal = primitive.find("NORMAL");
+    for (std::size_t v = 0; v < out[p].tangent->count(); ++v) {
+      if (out[p].normal_is_new) set_vector(*out[p].normal, v, {0, 0, 1});
+      out[p].set_tangent(v, {1, 0, 0, 1});
+    }
+    drop_tangent_targets(asset.primitives[p], primitive, report);
+  }
+  return out;
 }
 
 } // namespace orbis

@@ -60,16 +60,15 @@ struct SmoothFrames::Sample {
   double handedness = 1;
 };
 
-SmoothFrames::SmoothFrames(const CutMesh& cut, std::uint32_t page, const FrameField& field)
-    : cut_(cut), splines_(cut.charts.size()) {
-  for (std::size_t c = 0; c < cut.charts.size(); ++c) {
-    if (cut.charts[c].page != page) continue;
-    const std::vector<Sample> samples = samples_of(cut.charts[c], field);
+SmoothFrames::SmoothFrames(const CutMesh& cut, std::span<const std::uint32_t> charts, const FrameField& field)
+    : cut_(cut), charts_(charts), splines_(charts.size()) {
+  for (std::size_t i = 0; i < charts.size(); ++i) {
+    const std::vector<Sample> samples = samples_of(cut.charts[charts[i]], field);
     std::uint32_t cells = most_cells;
     do {
-      splines_[c] = fitted(samples, cells);
+      splines_[i] = fitted(samples, cells);
       cells /= 2;
-    } while (splines_[c].cells > 0 && !is_regular(splines_[c]));
+    } while (splines_[i].cells > 0 && !is_regular(splines_[i]));
   }
 }
 
@@ -77,7 +76,8 @@ VertexFrame SmoothFrames::at(std::uint32_t chart, const Vec2f& uv) const {
   const Chart& c = cut_.charts[chart];
   const Page& page = cut_.pages[c.page];
   const double x = (double{uv.x} * page.width - c.x) / c.width, y = (double{uv.y} * page.height - c.y) / c.height;
-  const Spline& spline = splines_[chart];
+  const auto number = std::ranges::lower_bound(charts_, chart) - charts_.begin();
+  const Spline& spline = splines_[static_cast<std::size_t>(number)];
   const Vec3d n = normalized(value(spline.normals, spline.cells, x, y));
   const Vec3d t = normalized(perpendicular_part(value(spline.tangents, spline.cells, x, y), n));
   return {Vec3f(n),

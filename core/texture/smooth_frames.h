@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/texture/atlas.h"
@@ -22,10 +22,11 @@ struct VertexFrame {
 // linearly in its triangles, and is then off by at most h^2 / 8 times the second derivative, which the cells bound.
 class SmoothFrames {
 public:
-  // field: the frames of the full surface. Keeps a reference to the mesh.
-  SmoothFrames(const CutMesh& cut, std::uint32_t page, const FrameField& field);
+  // charts: those of a page, ascending. field: the frames of the full surface there. Keeps references to the mesh and
+  // to the list of charts.
+  SmoothFrames(const CutMesh& cut, std::span<const std::uint32_t> charts, const FrameField& field);
 
-  // At a place in a chart of the page.
+  // At a place in one of the charts.
   [[nodiscard]] VertexFrame at(std::uint32_t chart, const Vec2f& uv) const;
 
 private:
@@ -41,7 +42,8 @@ private:
   [[nodiscard]] static bool is_regular(const Spline& spline);
 
   const CutMesh& cut_;
-  std::vector<Spline> splines_; // by chart
+  std::span<const std::uint32_t> charts_;
+  std::vector<Spline> splines_; // of the charts
 };
 
 } // namespace orbis::texture

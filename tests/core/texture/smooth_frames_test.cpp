@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "atlas_of.h"
 
@@ -35,6 +36,11 @@ struct Globe {
   [[nodiscard]] Vec3d normal_at(mesh::Index v) const {
     return normalized(Vec3d(sphere::from_grid(cut.vertices[v].sphere)));
   }
+  [[nodiscard]] std::vector<std::uint32_t> charts() const {
+    std::vector<std::uint32_t> out(cut.charts.size());
+    std::iota(out.begin(), out.end(), 0U);
+    return out;
+  }
   [[nodiscard]] FrameField field() const { return {&page.map, cut.triangles, normals, tangents}; }
 };
 
@@ -44,7 +50,8 @@ Vec3d direction(const Tangent& t) { return {double{t.x}, double{t.y}, double{t.z
 
 TEST_CASE("smooth frames are frames, lean the way the surface does, and keep its handedness") {
   const Globe globe;
-  const SmoothFrames smooth(globe.cut, 0, globe.field());
+  const std::vector<std::uint32_t> charts = globe.charts();
+  const SmoothFrames smooth(globe.cut, charts, globe.field());
   for (std::size_t t = 0; t < globe.cut.triangles.size(); ++t) {
     for (const mesh::Index v : globe.cut.triangles[t]) {
       const VertexFrame frame = smooth.at(globe.cut.chart[t], globe.cut.vertices[v].uv);
@@ -60,7 +67,8 @@ TEST_CASE("smooth frames are frames, lean the way the surface does, and keep its
 
 TEST_CASE("what lies between two places of a chart is what interpolation gives, closer the nearer they are") {
   const Globe globe;
-  const SmoothFrames smooth(globe.cut, 0, globe.field());
+  const std::vector<std::uint32_t> charts = globe.charts();
+  const SmoothFrames smooth(globe.cut, charts, globe.field());
   const Chart& chart = globe.cut.charts[0];
   const Page& page = globe.cut.pages[0];
   const auto at = [&](double x, double y) {
@@ -84,7 +92,8 @@ TEST_CASE("where the surface's normals cancel out, the frames are still frames")
   Globe globe;
   for (std::size_t v = 0; v < globe.normals.size(); ++v)
     globe.normals[v] = v % 2 == 0 ? Vec3f{0, 0, 1} : Vec3f{0, 0, -1};
-  const SmoothFrames smooth(globe.cut, 0, globe.field());
+  const std::vector<std::uint32_t> charts = globe.charts();
+  const SmoothFrames smooth(globe.cut, charts, globe.field());
   for (std::size_t t = 0; t < globe.cut.triangles.size(); ++t) {
     const VertexFrame frame = smooth.at(globe.cut.chart[t], globe.cut.vertices[globe.cut.triangles[t][0]].uv);
     CHECK(norm(Vec3d(frame.normal)) == doctest::Approx(1).epsilon(1e-6));
