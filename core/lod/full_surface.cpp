@@ -53,11 +53,17 @@ void FullSurface::scale_positions() {
   uv_scale_ = in_atlas > 0 ? std::sqrt(in_space / in_atlas) : 1;
 }
 
+// Not by the product of both: that many there may be only of a few.
 void FullSurface::number_regions(std::span<const std::uint32_t> primitive_of) {
-  for (const std::uint32_t p : primitive_of) primitives_ = std::max(primitives_, p + 1);
-  regions_.reserve(cut_.triangles.size());
-  for (std::size_t t = 0; t < cut_.triangles.size(); ++t)
-    regions_.push_back(cut_.chart[t] * primitives_ + primitive_of[cut_.parent[t]]);
+  const auto meaning = [&](std::size_t t) { return std::pair(cut_.chart[t], primitive_of[cut_.parent[t]]); };
+  const std::size_t triangles = cut_.triangles.size();
+  meaning_.reserve(triangles);
+  for (std::size_t t = 0; t < triangles; ++t) meaning_.push_back(meaning(t));
+  std::sort(meaning_.begin(), meaning_.end());
+  meaning_.erase(std::unique(meaning_.begin(), meaning_.end()), meaning_.end());
+  regions_.reserve(triangles);
+  for (std::size_t t = 0; t < triangles; ++t)
+    regions_.push_back(static_cast<std::uint32_t>(std::ranges::lower_bound(meaning_, meaning(t)) - meaning_.begin()));
 }
 
 void FullSurface::weigh() {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/lod/chart_map.h"
@@ -24,7 +25,8 @@ public:
   [[nodiscard]] const mesh::TriangleMesh& surface() const { return surface_; }
   // Cut vertex -> its point in space, scaled so that the bounding box has its centre at 0 and a diagonal of 1.
   [[nodiscard]] std::span<const Vec3d> positions() const { return positions_; }
-  // Cut triangle -> number of its region: the triangles of one primitive in one chart.
+  // Cut triangle -> number of its region: the triangles of one primitive in one chart. By chart, then by primitive,
+  // without gaps.
   [[nodiscard]] std::span<const std::uint32_t> regions() const { return regions_; }
   // Cut triangle -> its unit normal; 0 where it has no area.
   [[nodiscard]] const Vec3d& normal(std::size_t triangle) const { return normals_[triangle]; }
@@ -51,8 +53,8 @@ public:
   [[nodiscard]] std::uint32_t joint_of(const texture::CutVertex& vertex) const;
 
   // What a region's number says.
-  [[nodiscard]] std::uint32_t chart_of(std::uint32_t region) const { return region / primitives_; }
-  [[nodiscard]] std::uint32_t primitive_of(std::uint32_t region) const { return region % primitives_; }
+  [[nodiscard]] std::uint32_t chart_of(std::uint32_t region) const { return meaning_[region].first; }
+  [[nodiscard]] std::uint32_t primitive_of(std::uint32_t region) const { return meaning_[region].second; }
 
   // Places on it by their uv.
   [[nodiscard]] const ChartMap& chart_map() const { return *chart_map_; }
@@ -73,9 +75,9 @@ private:
   std::vector<Vec3d> positions_, normals_;
   std::vector<Weighing> weighings_;
   std::vector<std::uint32_t> regions_;
-  std::optional<ChartMap> chart_map_; // made after the regions
-  std::vector<std::uint32_t> joint_;  // vertex of the welded surface -> number of its joint, or `none`
-  std::uint32_t primitives_ = 1;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> meaning_; // of a region: its chart and its primitive
+  std::optional<ChartMap> chart_map_;                            // made after the regions
+  std::vector<std::uint32_t> joint_; // vertex of the welded surface -> number of its joint, or `none`
   Vec3d centre_;
   double diagonal_ = 1, uv_scale_ = 1;
 };

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstring>
 #include <map>
+#include <set>
 
 #include "core/lod/bumpy_worlds.h"
 #include "core/lod/distance.h"
@@ -122,6 +123,21 @@ TEST_CASE("a vertex takes its attributes from the full surface at its own place 
       CHECK(*std::min_element(v.barycentric.begin(), v.barycentric.end()) >= -1e-12);
     }
   }
+}
+
+// Numbers that were products of charts and primitives took gigabytes for thousands of both.
+TEST_CASE("the regions of the atlas are numbered without gaps, however many primitives there are") {
+  World world = bumpy_world(3, 5, 2);
+  for (std::uint32_t& primitive : world.primitive_of) primitive *= 1'000'000'000;
+  const lod::FullSurface full = world.full();
+  std::set<std::uint32_t> seen;
+  for (std::size_t t = 0; t < full.regions().size(); ++t) {
+    const std::uint32_t region = full.regions()[t];
+    seen.insert(region);
+    CHECK(full.chart_of(region) == world.cut.chart[t]);
+    CHECK(full.primitive_of(region) == world.primitive_of[world.cut.parent[t]]);
+  }
+  CHECK(*seen.rbegin() + 1 == seen.size());
 }
 
 TEST_CASE("a level stays close to the full surface, texel by texel, and shows nothing from outside of the charts") {
