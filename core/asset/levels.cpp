@@ -23,12 +23,19 @@ std::string level_name(const Json& named, std::size_t level) {
   return base + (base.empty() ? "LOD" : "_LOD") + std::to_string(level + 1);
 }
 
-// The mesh with the level's primitives in place of the full ones; null where none is left.
-Json level_mesh(const Json& mesh, std::size_t number, const Asset& asset, std::span<const NewPrimitive> full,
-                const NewLevel& level, const WritePrimitive& write) {
-  std::map<std::size_t, std::size_t> replaced; // primitive of the mesh -> primitive of the asset
+// Primitive of a mesh -> primitive of the asset; those that have new geometry.
+using Replaced = std::map<std::size_t, std::size_t>;
+
+// By mesh of the document.
+std::map<std::size_t, Replaced> replaced_primitives(const Asset& asset, std::span<const NewPrimitive> full) {
+  std::map<std::size_t, Replaced> out;
   for (std::size_t i = 0; i < full.size(); ++i)
-    if (asset.primitives[i].mesh == number && !full[i].indices.empty()) replaced[asset.primitives[i].primitive] = i;
+    if (!full[i].indices.empty()) out[asset.primitives[i].mesh][asset.primitives[i].primitive] = i;
+  return out;
+}
+
+// The mesh with the level's primitives in place of the full ones; null where none is left.
+Json level_mesh(const Json& mesh, const Replaced& replaced, const NewLevel& level, const WritePrimitive& write) {
   Json primitives = Json::array();
   bool any = false;
   for (std::size_t p = 0; p < mesh["primitives"].size(); ++p) {
@@ -48,15 +55,13 @@ Json level_mesh(const Json& mesh, std::size_t number, const Asset& asset, std::s
 
 LevelMeshes add_meshes(Output& out, const Asset& asset, std::span<const NewPrimitive> full,
                        std::span<const NewLevel> levels, const WritePrimitive& write) {
-  std::set<std::size_t> changed;
-  for (std::size_t i = 0; i < full.size(); ++i)
-    if (!full[i].indices.empty()) changed.insert(asset.primitives[i].mesh);
+  const std::map<std::size_t, Replaced> changed = replaced_primitives(asset, full);
   LevelMeshes meshes;
   for (std::size_t level = 0; level < levels.size(); ++level) {
-    for (const std::size_t m : changed) {
+    for (const auto& [m, replaced] : changed) {
       // A copy, since what write() adds may move the document's parts.
       const Json base = out.json["meshes"][m];
-      Json mesh = level_mesh(base, m, asset, full, levels[level], write);
+      Json mesh = level_mesh(base, replaced, levels[level], write);
       if (mesh.is_null()) {
         meshes[m].push_back(level == 0 ? m : meshes[m].back());
         continue;

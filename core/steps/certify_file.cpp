@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "core/mesh/weld.h"
 #include "core/sphere/certificate.h"
@@ -13,12 +15,20 @@ namespace {
   throw Error(ErrorCode::not_certified, "the result did not pass its proof, so it is not delivered: " + why);
 }
 
-// The primitive of the read-back file that stands where primitive p of the input stood.
-const asset::Primitive& counterpart(const asset::Asset& file, const asset::Primitive& p) {
-  for (const asset::Primitive& q : file.primitives) {
-    if (q.mesh == p.mesh && q.primitive == p.primitive) return q;
-  }
-  refuse("a primitive is missing from the file");
+// The read-back file's primitives by their place: mesh, and primitive of the mesh.
+using Places = std::map<std::pair<std::uint32_t, std::uint32_t>, const asset::Primitive*>;
+
+Places places_of(const asset::Asset& file) {
+  Places out;
+  for (const asset::Primitive& q : file.primitives) out[{q.mesh, q.primitive}] = &q;
+  return out;
+}
+
+// The one that stands where primitive p of the input stood.
+const asset::Primitive& counterpart(const Places& places, const asset::Primitive& p) {
+  const auto found = places.find({p.mesh, p.primitive});
+  if (found == places.end()) refuse("a primitive is missing from the file");
+  return *found->second;
 }
 
 std::vector<Vec3f> vectors(const asset::Primitive& primitive, std::string_view name) {
@@ -64,12 +74,13 @@ ReadBack read_back(std::span<const std::byte> glb, const asset::Asset& input, co
   Limits generous; // our own file: it is as large as it is
   generous.max_bytes = generous.max_triangles = generous.max_vertices = generous.max_image_pixels = UINT64_MAX / 64;
   const asset::Asset file = asset::read_asset(glb, {}, generous);
+  const Places places = places_of(file);
   ReadBack out;
   for (std::size_t i = 0; i < input.primitives.size(); ++i) {
     const auto first = static_cast<mesh::Index>(out.sphere.size());
     out.first.push_back(first);
     if (delivery.primitives[i].indices.empty()) continue;
-    const asset::Primitive& q = counterpart(file, input.primitives[i]);
+    const asset::Primitive& q = counterpart(places, input.primitives[i]);
     const std::vector<Vec3f> sphere = vectors(q, "_SPHERE"), position = q.positions();
     out.sphere.insert(out.sphere.end(), sphere.begin(), sphere.end());
     out.position.insert(out.position.end(), position.begin(), position.end());

@@ -69,6 +69,7 @@ private:
   texture::Shape shape_;
   std::vector<std::uint32_t> mesh_of_vertex_;
   std::vector<std::vector<std::uint32_t>> triangles_of_; // mesh of the document -> its triangles
+  std::vector<mesh::Index> copy_of_;                     // vertex -> its latest copy
 
   void find_meshes(const texture::CutMesh& cut) {
     mesh_of_vertex_.resize(cut.vertices.size());
@@ -88,6 +89,7 @@ private:
       all += placements_[m].size() * triangles_of_[m].size();
     }
     for (std::size_t v = 0; v < positions.size(); ++v) put(v, placements_[mesh_of_vertex_[v]].front());
+    copy_of_.resize(positions.size());
     for (std::size_t m = 0; m < placements_.size() && all <= most_triangles; ++m)
       for (std::size_t i = 1; i < placements_[m].size(); ++i) add_copy(m, placements_[m][i], positions, normals);
   }
@@ -111,18 +113,19 @@ private:
 
   void add_copy(std::size_t mesh, const Placement& placement, std::span<const Vec3d> positions,
                 std::span<const Vec3d> normals) {
-    std::vector<mesh::Index> number(positions.size(), no_primitive);
+    const auto first = static_cast<mesh::Index>(mesh_.vertices.size());
     for (const std::uint32_t t : triangles_of_[mesh]) {
       mesh::Triangle triangle = mesh_.triangles[t];
       for (mesh::Index& v : triangle) {
-        if (number[v] == no_primitive) {
-          number[v] = static_cast<mesh::Index>(mesh_.vertices.size());
+        mesh::Index& copy = copy_of_[v];
+        if (copy < first) {
+          copy = static_cast<mesh::Index>(mesh_.vertices.size());
           mesh_.vertices.push_back(mesh_.vertices[v]);
           shape_.positions.push_back(positions[v]);
           shape_.normals.push_back(normals[v]);
-          put(number[v], placement);
+          put(copy, placement);
         }
-        v = number[v];
+        v = copy;
       }
       mesh_.triangles.push_back(triangle);
       mesh_.chart.push_back(mesh_.chart[t]);

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/mesh/groups.h"
 #include "core/texture/page_raster.h"
 #include "core/texture/settle.h"
 
@@ -141,14 +142,19 @@ private:
       out_.not_filled += !is_open_[c] && doubled_area_[c] != frames_[c].doubled_area() ? 1 : 0;
   }
 
+  // In a valid atlas no texel's centre lies in two triangles.
   void check_texels() {
-    for (std::uint32_t page = 0; page < mesh_.pages.size(); ++page) {
-      std::vector<bool> taken(std::size_t{mesh_.pages[page].width} * mesh_.pages[page].height, false);
-      rasterize_page(mesh_, page, [&](std::uint32_t x, std::uint32_t y, std::uint32_t, const std::array<double, 3>&) {
-        const std::size_t i = std::size_t{y} * mesh_.pages[page].width + x;
+    const mesh::Groups triangles(mesh_.triangles.size(), mesh_.pages.size(),
+                                 [this](std::uint32_t t) { return mesh_.page_of(t); });
+    for (std::size_t page = 0; page < mesh_.pages.size(); ++page) {
+      const Page& size = mesh_.pages[page];
+      std::vector<bool> taken(std::size_t{size.width} * size.height, false);
+      const auto take = [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>&) {
+        const std::size_t i = std::size_t{y} * size.width + x;
         out_.shared_texels += taken[i] ? 1 : 0;
         taken[i] = true;
-      });
+      };
+      for (const std::uint32_t t : triangles[page]) rasterize(in_page(mesh_, t), size.width, size.height, take);
     }
   }
 };

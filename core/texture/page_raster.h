@@ -31,15 +31,4 @@ namespace orbis::texture {
   return step;
 }
 
-// Calls visit(x, y, triangle, weights) for every texel of a page whose centre lies in a delivered triangle; weights are
-// the barycentric coordinates of the centre. In a valid atlas no texel is visited twice.
-template <class Visit> void rasterize_page(const CutMesh& mesh, std::uint32_t page, Visit visit) {
-  const Page& size = mesh.pages[page];
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (mesh.page_of(t) != page) continue;
-    rasterize(in_page(mesh, t), size.width, size.height,
-              [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>& weights) { visit(x, y, t, weights); });
-  }
-}
-
 } // namespace orbis::texture

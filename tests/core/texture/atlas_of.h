@@ -61,16 +61,26 @@ inline orbis::texture::Image surrounded(const orbis::texture::CutMesh& mesh,
   return orbis::texture::bake_cube_map(page.map, mesh, images, progress, page.pool);
 }
 
+// Calls visit(x, y, triangle, weights) for every texel of page 0, the only one, whose centre lies in a triangle;
+// weights are the barycentric coordinates of the centre.
+template <class Visit> void rasterize_page(const orbis::texture::CutMesh& mesh, Visit visit) {
+  const orbis::texture::Page& page = mesh.pages[0];
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    orbis::texture::rasterize(
+        orbis::texture::in_page(mesh, t), page.width, page.height,
+        [&](std::uint32_t x, std::uint32_t y, const std::array<double, 3>& weights) { visit(x, y, t, weights); });
+  }
+}
+
 // The direction on the sphere that each covered texel of page 0 shows; zero where none does.
 inline std::vector<Vec3d> directions(const orbis::texture::CutMesh& mesh) {
   const orbis::texture::Page& page = mesh.pages[0];
   std::vector<Vec3d> out(std::size_t{page.width} * page.height);
-  orbis::texture::rasterize_page(
-      mesh, 0, [&](std::uint32_t x, std::uint32_t y, std::uint32_t t, const std::array<double, 3>& weights) {
-        Vec3d& d = out[std::size_t{y} * page.width + x];
-        for (std::size_t k = 0; k < 3; ++k)
-          d += Vec3d(orbis::sphere::from_grid(mesh.vertices[mesh.triangles[t][k]].sphere)) * weights[k];
-      });
+  rasterize_page(mesh, [&](std::uint32_t x, std::uint32_t y, std::uint32_t t, const std::array<double, 3>& weights) {
+    Vec3d& d = out[std::size_t{y} * page.width + x];
+    for (std::size_t k = 0; k < 3; ++k)
+      d += Vec3d(orbis::sphere::from_grid(mesh.vertices[mesh.triangles[t][k]].sphere)) * weights[k];
+  });
   return out;
 }
 

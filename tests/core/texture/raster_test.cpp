@@ -82,7 +82,7 @@ TEST_CASE("the triangles of a cut sphere cover every texel of the charts exactly
     for (const Chart& chart : result.charts)
       for (std::uint32_t y = chart.y; y < chart.y + chart.height; ++y)
         for (std::uint32_t x = chart.x; x < chart.x + chart.width; ++x) ++expected[std::size_t{y} * page.width + x];
-    rasterize_page(result, 0, [&](std::uint32_t x, std::uint32_t y, std::uint32_t t, const std::array<double, 3>&) {
+    rasterize_page(result, [&](std::uint32_t x, std::uint32_t y, std::uint32_t t, const std::array<double, 3>&) {
       const Chart& chart = result.charts[result.chart[t]];
       CHECK((x - chart.x < chart.width && y - chart.y < chart.height)); // no other chart's texel
       ++counts[std::size_t{y} * page.width + x];
