@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -32,12 +33,12 @@ int atlas_orientation(const texture::CutMesh& cut) {
 
 class LevelReader {
 public:
-  // first: the number of the file's primitive where the levels begin.
-  LevelReader(std::span<const std::byte> glb, const asset::Asset& asset, std::size_t first)
-      : asset_(asset), next_(first) {
+  // first_mesh: where the meshes of the levels begin in the file.
+  LevelReader(std::span<const std::byte> glb, const asset::Asset& asset, std::uint32_t first_mesh) : asset_(asset) {
     Limits generous; // our own file: it is as large as it is
     generous.max_bytes = generous.max_triangles = generous.max_vertices = generous.max_image_pixels = UINT64_MAX / 64;
     file_ = asset::read_asset(glb, {}, generous);
+    while (next_ < file_.primitives.size() && file_.primitives[next_].mesh < first_mesh) ++next_;
   }
 
   // The levels' primitives stand behind the document's, in the order in which they were written.
@@ -77,7 +78,7 @@ private:
 
   const asset::Asset& asset_;
   asset::Asset file_;
-  std::size_t next_;
+  std::size_t next_ = 0;
 };
 
 struct LevelProof {
@@ -106,7 +107,10 @@ LevelProof prove(const std::vector<Piece>& pieces, const Surface& surface, std::
 void certify_levels(std::span<const std::byte> glb, const asset::Asset& asset, const Surface& surface,
                     std::span<const DetailLevel> levels, Report& report) {
   if (levels.empty()) return;
-  LevelReader reader(glb, asset, asset.primitives.size());
+  // Primitives are no measure: what was left out of a mesh stands behind it as one more.
+  std::uint32_t meshes = 0;
+  for (const asset::Primitive& p : asset.primitives) meshes = std::max(meshes, p.mesh + 1);
+  LevelReader reader(glb, asset, meshes);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const LevelProof proof = prove(reader.next(i, levels[i], surface.components.size()), surface, i);
     report.levels[i].folded = proof.folded;

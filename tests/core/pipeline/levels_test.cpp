@@ -76,6 +76,21 @@ std::map<std::string, std::vector<std::byte>> stored_members(const std::vector<s
 
 } // namespace
 
+// The levels' proof had counted the file's primitives by the input's, and taken the second mesh for a level.
+TEST_CASE("a component that is left out of one mesh does not hide the levels of the others") {
+  mesh::TriangleMesh point = shapes::tetrahedron();
+  for (Vec3f& p : point.positions) p = {7, 7, 7};
+  const std::vector<std::byte> glb = patched(glb_of(shapes::joined(shapes::bumpy_sphere(3), point)), [](Json& json) {
+    json["meshes"].push_back(Json(json["meshes"][0]));
+    json["nodes"] = Json::parse(R"([{"mesh": 0}, {"mesh": 1}])");
+    json["scenes"][0]["nodes"] = {0, 1};
+  });
+  const Result result = run(glb, "0.3");
+  CHECK(result.report.partial);
+  REQUIRE(result.report.levels.size() == 1);
+  CHECK(result.report.levels[0].degree == doctest::Approx(1));
+}
+
 TEST_CASE("levels of detail are alternatives of the node, share its material, and are what the report says") {
   const Result result = run(glb_of(shapes::bumpy_sphere(4)), "0.5,0.1,60");
   const Json json = json_of(result.glb);
