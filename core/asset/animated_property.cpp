@@ -91,16 +91,16 @@ void set_animated_node(Json& channel, std::size_t node) {
   channel["target"]["node"] = node;
 }
 
-void animate_copies(Json& document, std::span<const MaterialCopy> copies) {
+void animate_copies(Json& document, std::string_view array, std::span<const PartCopy> copies) {
   for_animations(document, [&](Json& channels) {
     for (const auto& [of, copy] : copies) {
       Json added = Json::array();
       for (const Json& channel : channels) {
         const std::string* pointer = pointer_of(channel);
-        std::optional<Member> member = pointer ? member_of("materials", *pointer) : std::nullopt;
+        std::optional<Member> member = pointer ? member_of(array, *pointer) : std::nullopt;
         if (!member || member->number != of) continue;
         member->number = copy;
-        std::string text = pointer_to("materials", *member);
+        std::string text = pointer_to(array, *member);
         if (is_gone(document, *pointer, document, text)) continue;
         added.push_back(channel);
         set_pointer(added.back(), std::move(text));

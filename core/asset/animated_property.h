@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/asset/json.h"
@@ -22,13 +23,14 @@ struct AnimatedNode {
 // Makes the channel, which animates a node, animate the same property of another one.
 void set_animated_node(Json& channel, std::size_t node);
 
-// A material that was copied, and its copy.
-struct MaterialCopy {
+// A material or a mesh that was copied, and its copy.
+struct PartCopy {
   std::size_t of = 0, copy = 0;
 };
 
-// What animates a material by pointer animates its copies alike. copies: a copy's own copies stand behind it.
-void animate_copies(Json& document, std::span<const MaterialCopy> copies);
+// What animates a part of the document by pointer animates its copies alike. array: "materials" or "meshes". copies: a
+// copy's own copies stand behind it.
+void animate_copies(Json& document, std::string_view array, std::span<const PartCopy> copies);
 
 // Drops the channels whose pointer led to something in `before` that is gone: a texture transform, which the atlas has
 // no use for. Animations without a channel go too. Returns the pointers that were dropped.

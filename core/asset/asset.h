@@ -144,10 +144,17 @@ struct NewPrimitive {
   // The name of the last target where that is not the input's; all new primitives of a mesh then have it.
   std::string added_target{};
 
+  // Where some nodes mirror the mesh and others do not: those that do show a copy of it whose TANGENT has its w
+  // negated.
+  bool mirrors_tangents = false;
+
   // The attribute of this name, or null.
   [[nodiscard]] const Attribute* find(std::string_view name) const;
   [[nodiscard]] Attribute* find(std::string_view name);
 };
+
+// Negates the w of a TANGENT: the bitangent then points the other way.
+void negate_handedness(Attribute& tangent);
 
 // A coarser version of the new primitives.
 struct NewLevel {

@@ -103,6 +103,10 @@ Attribute* NewPrimitive::find(std::string_view name) {
   return const_cast<Attribute*>(std::as_const(*this).find(name)); // NOLINT: it is one of our own
 }
 
+void negate_handedness(Attribute& tangent) {
+  for (std::size_t v = 0; v < tangent.count(); ++v) tangent.set(v, 3, -tangent.get(v, 3));
+}
+
 std::size_t Primitive::vertex_count() const { return attributes.empty() ? 0 : attributes.front().count(); }
 
 std::vector<Vec3f> Primitive::positions() const {

@@ -100,7 +100,7 @@ public:
     }
   }
 
-  [[nodiscard]] const std::vector<MaterialCopy>& copies() const { return copies_; }
+  [[nodiscard]] const std::vector<PartCopy>& copies() const { return copies_; }
 
 private:
   // A material may be changed in place if all who use it show the atlas alike.
@@ -152,7 +152,7 @@ private:
   std::map<std::pair<std::size_t, std::size_t>, const AtlasLook*> look_of_;
   std::set<std::size_t> shared_;
   std::map<std::tuple<std::size_t, std::size_t, AtlasLook>, std::size_t> replacements_;
-  std::vector<MaterialCopy> copies_;
+  std::vector<PartCopy> copies_;
 };
 
 } // namespace
@@ -202,7 +202,7 @@ bool is_double_sided(const Asset& asset, const Primitive& primitive) {
   return flag && flag->is_boolean() && flag->get<bool>();
 }
 
-std::vector<MaterialCopy> assign_atlas(Json& document, const std::vector<AtlasUser>& users) {
+std::vector<PartCopy> assign_atlas(Json& document, const std::vector<AtlasUser>& users) {
   AtlasMaterials materials(document, users);
   for (const AtlasUser& user : users) materials.assign(user);
   return materials.copies();

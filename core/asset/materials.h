@@ -46,7 +46,7 @@ struct AtlasUser {
 // else a copy; a new one (named after the mesh, dielectric, roughness 0.8) where it has none. Other textures stay as
 // they are. A normal map that is replaced has scale 1. The mappings of KHR_materials_variants follow where they name
 // the primitive's own material. Returns the copies.
-std::vector<MaterialCopy> assign_atlas(Json& document, const std::vector<AtlasUser>& users);
+std::vector<PartCopy> assign_atlas(Json& document, const std::vector<AtlasUser>& users);
 
 // The primitives of levels of detail share their materials with the full surface, but for textures of their own.
 class LevelMaterials {
@@ -58,14 +58,14 @@ public:
   void assign(Json& primitive, const AtlasLook& look);
 
   // All that were made so far.
-  [[nodiscard]] std::span<const MaterialCopy> copies() const { return made_; }
+  [[nodiscard]] std::span<const PartCopy> copies() const { return made_; }
 
 private:
   [[nodiscard]] std::size_t copy_of(std::size_t material, const AtlasLook& look);
 
   Json& document_;
   std::map<std::pair<std::size_t, AtlasLook>, std::size_t> copies_;
-  std::vector<MaterialCopy> made_;
+  std::vector<PartCopy> made_;
 };
 
 } // namespace orbis::asset

@@ -8,6 +8,7 @@
 #include "core/asset/extensions.h"
 #include "core/asset/levels.h"
 #include "core/asset/materials.h"
+#include "core/asset/mirrored_instances.h"
 #include "core/asset/output.h"
 
 namespace orbis::asset {
@@ -122,11 +123,12 @@ void append_left_out(Output& out, const Primitive& old, const NewPrimitive& sour
   out.json["meshes"][old.mesh]["primitives"].push_back(std::move(primitive));
 }
 
-void replace_primitive(Output& out, const Primitive& old, const NewPrimitive& source, Compression compression) {
+// Returns what stands there now.
+const Json& replace_primitive(Output& out, const Primitive& old, const NewPrimitive& source, Compression compression) {
   erase_extension(out.json["meshes"][old.mesh], "EXT_mesh_manifold");
   // A copy goes in, since views and accessors that are added may move the document's parts.
   Json primitive = with_geometry(out, out.json["meshes"][old.mesh]["primitives"][old.primitive], source, compression);
-  out.json["meshes"][old.mesh]["primitives"][old.primitive] = std::move(primitive);
+  return out.json["meshes"][old.mesh]["primitives"][old.primitive] = std::move(primitive);
 }
 
 template <class T> std::size_t append(Json& json, const char* array, T item) {
@@ -259,18 +261,18 @@ Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, 
   Output out(document, is_meshopt ? GeometryCoding::meshopt : GeometryCoding::plain);
   embed_images(out, document);
   const std::size_t first_texture = add_textures(out, images);
+  MirroredInstances mirrored(out, asset);
   std::vector<AtlasUser> users;
-  std::vector<std::uint32_t> pages; // of the users
   for (std::size_t i = 0; i < primitives.size(); ++i) {
     const Primitive& old = asset.primitives[i];
     if (primitives[i].indices.empty()) continue;
     check_new_primitive(primitives[i], images.size());
     append_left_out(out, old, primitives[i], compression);
-    replace_primitive(out, old, primitives[i], compression);
+    mirrored.add(replace_primitive(out, old, primitives[i], compression), primitives[i]);
     if (!primitives[i].textures.empty())
       users.push_back({old.mesh, old.primitive, look_of(primitives[i], first_texture)});
   }
-  std::vector<MaterialCopy> copies;
+  std::vector<PartCopy> copies;
   if (!users.empty()) copies = assign_atlas(out.json, users);
   describe_added_targets(out, asset, primitives);
   for (const NewLevel& level : levels)
@@ -280,11 +282,13 @@ Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, 
   add_levels(out, asset, primitives, levels, [&](const Json& base, const NewPrimitive& geometry) {
     Json primitive = with_geometry(out, base, geometry, compression);
     materials.assign(primitive, look_of(geometry, first_texture));
+    mirrored.add(primitive, geometry);
     return primitive;
   });
   copies.insert(copies.end(), materials.copies().begin(), materials.copies().end());
   note_dropped(drop_dead_channels(out.json, document.json), notes);
-  animate_copies(out.json, copies);
+  animate_copies(out.json, "materials", copies);
+  mirrored.split();
   if (!document.keeps_numbers) out.drop_unreferenced();
   update_extensions(out.json, document.json, primitives, images);
   write_extras(out.json, extras_json);

@@ -1,54 +1,49 @@
 #include "core/steps/mirrored_tangents.h"
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
 
-#include "core/asset/placement.h"
+#include "core/asset/mirrored_instances.h"
 
 namespace orbis {
 namespace {
-
-bool mirrors(const asset::Placement& placement) {
-  const auto& [x, y, z] = placement.linear;
-  return dot(Vec3d{x[0], x[1], x[2]}, cross(Vec3d{y[0], y[1], y[2]}, Vec3d{z[0], z[1], z[2]})) < 0;
-}
 
 bool shows_normal_map(const asset::NewPrimitive& primitive) {
   return primitive.textures.contains(asset::TextureSlot::normal);
 }
 
-void negate_w(asset::NewPrimitive& primitive) {
-  asset::Attribute* const tangent = primitive.find("TANGENT");
-  for (std::size_t v = 0; tangent != nullptr && v < tangent->count(); ++v) tangent->set(v, 3, -tangent->get(v, 3));
+// The primitives that stand for primitive p of the asset and whose TANGENT has to go by the nodes.
+std::vector<asset::NewPrimitive*> affected(const asset::Asset& asset, std::size_t p, Delivery& delivery,
+                                           std::span<DetailLevel> levels) {
+  std::vector<asset::NewPrimitive*> out;
+  asset::NewPrimitive& full = delivery.primitives[p];
+  if (shows_normal_map(full) && asset.primitives[p].find("TANGENT") == nullptr) out.push_back(&full);
+  for (DetailLevel& level : levels)
+    if (shows_normal_map(level.delivery.primitives[p])) out.push_back(&level.delivery.primitives[p]);
+  return out;
 }
 
 } // namespace
 
 void mirror_tangents(const asset::Asset& asset, Delivery& delivery, std::span<DetailLevel> levels, Report& report) {
-  const std::vector<std::vector<asset::Placement>> placements = asset::placements_of(asset);
-  std::vector<bool> is_noted(placements.size());
+  const std::vector<asset::Handedness> meshes = asset::handedness_of_meshes(asset);
+  std::set<std::uint32_t> mixed;
   for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
-    const std::uint32_t mesh = asset.primitives[p].mesh;
-    const auto mirrored = std::ranges::count_if(placements[mesh], mirrors);
-    if (mirrored == 0) continue;
-    const bool is_ours = shows_normal_map(delivery.primitives[p]) && asset.primitives[p].find("TANGENT") == nullptr;
-    const bool in_levels = std::ranges::any_of(
-        levels, [&](const DetailLevel& level) { return shows_normal_map(level.delivery.primitives[p]); });
-    if (!is_ours && !in_levels) continue;
-    if (mirrored < std::ssize(placements[mesh])) {
-      if (!is_noted[mesh])
-        report.notes.push_back({"mirrored-instances",
-                                "some nodes mirror the mesh and others do not: its normal map is right at those that "
-                                "do not, and upside down at the others",
-                                "/meshes/" + std::to_string(mesh)});
-      is_noted[mesh] = true;
-      continue;
+    const asset::Handedness& mesh = meshes[asset.primitives[p].mesh];
+    for (asset::NewPrimitive* primitive : affected(asset, p, delivery, levels)) {
+      if (mesh.mixed) mixed.insert(asset.primitives[p].mesh);
+      asset::Attribute* const tangent = primitive->find("TANGENT");
+      if (mesh.mirrored && mesh.straight) primitive->mirrors_tangents = true;
+      if (mesh.mirrored && !mesh.straight && tangent != nullptr) asset::negate_handedness(*tangent);
     }
-    if (is_ours) negate_w(delivery.primitives[p]);
-    for (DetailLevel& level : levels)
-      if (shows_normal_map(level.delivery.primitives[p])) negate_w(level.delivery.primitives[p]);
   }
+  for (const std::uint32_t mesh : mixed)
+    report.notes.push_back({"mirrored-instances",
+                            "some instances of a node (EXT_mesh_gpu_instancing) mirror the mesh and others do not: its "
+                            "normal map is right at those that do not, and upside down at the others",
+                            "/meshes/" + std::to_string(mesh)});
 }
 
 } // namespace orbis

@@ -217,26 +217,50 @@ TEST_CASE("under a node that mirrors, the bitangent points the other way") {
   both.json["scenes"][0]["nodes"].push_back(both.append("nodes", Json{{"mesh", 0}, {"scale", {1, 1, -2}}}));
   const Result at_plain = run(plain, settings), at_mirrored = run(mirrored, settings), at_both = run(both, settings);
   CHECK(map_of(at_plain, "normal.png").pixels == map_of(at_mirrored, "normal.png").pixels);
-  const asset::Asset a = asset::read_asset(at_plain.glb, {}, {}), b = asset::read_asset(at_mirrored.glb, {}, {}),
-                     c = asset::read_asset(at_both.glb, {}, {});
-  REQUIRE(a.primitives.size() == 2); // the full surface and a level
-  REQUIRE(b.primitives.size() == 2);
-  for (std::size_t p = 0; p < 2; ++p) {
-    const asset::Attribute *straight = a.primitives[p].find("TANGENT"), *turned = b.primitives[p].find("TANGENT"),
-                           *mixed = c.primitives[p].find("TANGENT");
-    REQUIRE(straight != nullptr);
-    REQUIRE(turned != nullptr);
-    REQUIRE(turned->count() == straight->count());
-    for (std::size_t v = 0; v < straight->count(); ++v) {
-      CHECK(turned->get(v, 3) == -straight->get(v, 3));
-      CHECK(mixed->get(v, 3) == straight->get(v, 3));
-    }
-  }
-  const auto noted = [](const Result& r) {
-    return std::ranges::count(r.report.notes, "mirrored-instances", &Note::code);
+  const auto tangents_of = [](const Result& result) {
+    std::vector<asset::Attribute> out;
+    for (const asset::Primitive& p : asset::read_asset(result.glb, {}, {}).primitives)
+      out.push_back(*p.find("TANGENT"));
+    return out;
   };
-  CHECK(noted(at_mirrored) == 0);
-  CHECK(noted(at_both) == 1);
+  const std::vector<asset::Attribute> straight = tangents_of(at_plain), turned = tangents_of(at_mirrored),
+                                      split = tangents_of(at_both);
+  REQUIRE(straight.size() == 2); // the full surface and a level
+  REQUIRE(turned.size() == 2);
+  REQUIRE(split.size() == 4); // and both for the node that mirrors
+  for (std::size_t p = 0; p < 2; ++p) {
+    REQUIRE(turned[p].count() == straight[p].count());
+    for (std::size_t v = 0; v < straight[p].count(); ++v) CHECK(turned[p].get(v, 3) == -straight[p].get(v, 3));
+    CHECK(split[p].data == straight[p].data);
+    CHECK(split[p + 2].data == turned[p].data);
+  }
+  CHECK(std::ranges::count(at_both.report.notes, "mirrored-instances", &Note::code) == 0);
+}
+
+TEST_CASE("the levels of a node that mirrors mirror too") {
+  GltfBuilder b = painted_sphere();
+  b.json["scenes"][0]["nodes"].push_back(b.append("nodes", Json{{"mesh", 0}, {"scale", {1, 1, -1}}}));
+  const Json json = json_of(run(b, {{"maps", "normal"}, {"lods", "0.2"}}).glb);
+  const Json &straight = json["nodes"][0], &mirrored = json["nodes"][1];
+  const auto level_of = [&](const Json& node) {
+    return json["nodes"][node["extensions"]["MSFT_lod"]["ids"][0].get<std::size_t>()]["mesh"].get<int>();
+  };
+  CHECK(straight["mesh"] == 0);
+  CHECK(level_of(straight) == 1);
+  CHECK(mirrored["mesh"] == 2);
+  CHECK(level_of(mirrored) == 3);
+}
+
+TEST_CASE("instances of one node that mirror, beside others that do not, are noted") {
+  GltfBuilder b = painted_sphere();
+  b.json["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  const std::size_t scales = b.add_accessor<float>({1, 1, 1, -1, 1, 1}, "VEC3", 3);
+  b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] = scales;
+  const auto noted = [&](const char* maps) {
+    return std::ranges::count(run(b, {{"maps", maps}}).report.notes, "mirrored-instances", &Note::code);
+  };
+  CHECK(noted("normal") == 1);
+  CHECK(noted("base_color") == 0);
 }
 
 TEST_CASE("without normals a surface is flat, and its normal map says so on smooth vertices") {
