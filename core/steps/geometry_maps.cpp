@@ -52,7 +52,7 @@ void GeometryMaps::bake_normals() {
   const bool objects = job_.options().maps.names(Map::object_normal);
   if (!job_.wants(Map::normal) && !objects) return;
   SlotTextures textures = page_.shown(normal_);
-  const DecodedImages images = decode(job_.asset, job_.limits, false, textures, job_.report);
+  const DecodedImages images = page_.images().decode(false, textures);
   const std::vector<bool> wanted = takes_normal_map(textures), of_levels = levels_take_normal_map(wanted);
   if (!any(wanted) && !any(of_levels) && !objects) return;
 

@@ -92,7 +92,7 @@ void MaterialMaps::bake_base_color() {
   SlotTextures textures = page_.shown(base_color_);
   const bool strict = job_.options().texture == TextureSource::base_color;
   const SlotTextures named = textures;
-  const DecodedImages images = decode(job_.asset, job_.limits, strict, textures, job_.report);
+  const DecodedImages images = page_.images().decode(strict, textures);
   for (std::size_t p = 0; p < named.size(); ++p)
     if (named[p] && !textures[p]) colored_[p] = false;
   std::vector<bool> takes(textures.size());
@@ -123,10 +123,9 @@ void MaterialMaps::show_base_color(const std::vector<bool>& takes, std::uint32_t
 void MaterialMaps::bake_metallic_roughness_and_occlusion() {
   SlotTextures metals = page_.shown(metallic_roughness_), occlusion = page_.shown(occlusion_);
   const bool alike = std::ranges::equal(metals, occlusion, read_alike);
-  const DecodedImages metals_images = decode(job_.asset, job_.limits, false, metals, job_.report);
+  const DecodedImages metals_images = page_.images().decode(false, metals);
   if (alike) occlusion = metals;
-  const DecodedImages occlusion_images =
-      alike ? DecodedImages{} : decode(job_.asset, job_.limits, false, occlusion, job_.report);
+  const DecodedImages occlusion_images = alike ? DecodedImages{} : page_.images().decode(false, occlusion);
   if (!any(metals) && !any(occlusion)) return;
   Image image = any(metals) ? resample(metals, metals_images, {}, Encoding::linear)
                             : resample(occlusion, occlusion_images, {}, Encoding::linear);
@@ -144,7 +143,7 @@ void MaterialMaps::bake_metallic_roughness_and_occlusion() {
 
 void MaterialMaps::bake_emissive() {
   SlotTextures textures = page_.shown(emissive_);
-  const DecodedImages images = decode(job_.asset, job_.limits, false, textures, job_.report);
+  const DecodedImages images = page_.images().decode(false, textures);
   if (!any(textures)) return;
   const Image image = resample(textures, images, {}, Encoding::srgb);
   show(textures, TextureSlot::emissive, page_.add(image, MapKind::color, "emissive"));

@@ -55,17 +55,32 @@ SlotTextures textures_of(const asset::Asset& asset, const Delivery& delivery, as
   return out;
 }
 
-DecodedImages decode(const asset::Asset& asset, const Limits& limits, bool strict, SlotTextures& textures,
-                     Report& report) {
+std::shared_ptr<const texture::Image> ImageDecoder::image(const asset::MaterialTexture& texture,
+                                                          const std::string& where) {
+  if (const auto kept = kept_.find(texture.image_number); kept != kept_.end()) return kept->second;
+  auto out =
+      std::make_shared<const texture::Image>(asset::decode_image(texture.image, limits_.max_image_pixels, where));
+  const std::size_t bytes = out->pixels.size();
+  if (bytes > most_kept_) return out;
+  if (kept_bytes_ + bytes > most_kept_) {
+    kept_.clear();
+    kept_bytes_ = 0;
+  }
+  kept_.emplace(texture.image_number, out);
+  kept_bytes_ += bytes;
+  return out;
+}
+
+DecodedImages ImageDecoder::decode(bool strict, SlotTextures& textures) {
   DecodedImages out;
   for (std::size_t p = 0; p < textures.size(); ++p) {
     if (!textures[p] || out.contains(textures[p]->image_number)) continue;
-    const std::string where = pointer_to(asset.primitives[p]);
+    const std::string where = pointer_to(asset_.primitives[p]);
     try {
-      out.emplace(textures[p]->image_number, asset::decode_image(textures[p]->image, limits.max_image_pixels, where));
+      out.emplace(textures[p]->image_number, image(*textures[p], where));
     } catch (const Error& e) {
       if (strict && e.code() != ErrorCode::unsupported_format) throw;
-      note_kept(report, "a texture was not baked: " + e.message(), where);
+      note_kept(report_, "a texture was not baked: " + e.message(), where);
       const std::size_t failed = textures[p]->image_number;
       for (auto& texture : textures) {
         if (texture && texture->image_number == failed) texture.reset();
@@ -79,7 +94,7 @@ std::vector<texture::TextureSource> sources_of(const SlotTextures& textures, con
   std::vector<texture::TextureSource> out(textures.size());
   for (std::size_t p = 0; p < out.size(); ++p) {
     if (!textures[p]) continue;
-    out[p].image = &images.at(textures[p]->image_number);
+    out[p].image = images.at(textures[p]->image_number).get();
     out[p].wrap_u = static_cast<texture::Wrap>(textures[p]->wrap_s);
     out[p].wrap_v = static_cast<texture::Wrap>(textures[p]->wrap_t);
     out[p].nearest = textures[p]->nearest;

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/asset/asset.h"
@@ -24,12 +26,29 @@ using SlotTextures = std::vector<std::optional<asset::MaterialTexture>>;
                                        Report& report);
 
 // Decoded images by their number in the document.
-using DecodedImages = std::map<std::size_t, texture::Image>;
+using DecodedImages = std::map<std::size_t, std::shared_ptr<const texture::Image>>;
 
-// Decodes what the textures name. A primitive whose image is in an unknown format loses its texture, with a note; so
-// does one whose image is damaged, unless that is an error (`strict`). Throws Error: malformed, too_large.
-[[nodiscard]] DecodedImages decode(const asset::Asset& asset, const Limits& limits, bool strict, SlotTextures& textures,
-                                   Report& report);
+// Decodes images page by page. Those that fit into `most_kept` bytes are there when the next page asks for them:
+// hundreds of materials may share one.
+class ImageDecoder {
+public:
+  // Keeps references to all three.
+  ImageDecoder(const asset::Asset& asset, const Limits& limits, Report& report, std::size_t most_kept)
+      : asset_(asset), limits_(limits), report_(report), most_kept_(most_kept) {}
+
+  // What the textures name. A primitive whose image is in an unknown format loses its texture, with a note; so does
+  // one whose image is damaged, unless that is an error (`strict`). Throws Error: malformed, too_large.
+  [[nodiscard]] DecodedImages decode(bool strict, SlotTextures& textures);
+
+private:
+  std::shared_ptr<const texture::Image> image(const asset::MaterialTexture& texture, const std::string& where);
+
+  const asset::Asset& asset_;
+  const Limits& limits_;
+  Report& report_;
+  std::size_t most_kept_, kept_bytes_ = 0;
+  DecodedImages kept_;
+};
 
 // How the textures are to be read, by primitive; without a texture: white. Refers to `images`.
 [[nodiscard]] std::vector<texture::TextureSource> sources_of(const SlotTextures& textures, const DecodedImages& images);

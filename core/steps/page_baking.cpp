@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace orbis {
+namespace {
+
+constexpr std::size_t kept_images = 1U << 27U; // bytes: two of 4096 x 4096 texels, for the pages behind the first
+
+} // namespace
 
 bool any(const SlotTextures& textures) {
   return std::ranges::any_of(textures, [](const auto& t) { return t.has_value(); });
@@ -10,7 +15,8 @@ bool any(const SlotTextures& textures) {
 bool any(const std::vector<bool>& flags) { return std::ranges::find(flags, true) != flags.end(); }
 
 PageBaking::PageBaking(const BakeJob& job)
-    : job_(job), pool_(job.options().threads), values_(job.asset, job.surface, job.cut, pool_), by_page_(job.cut) {
+    : job_(job), pool_(job.options().threads), values_(job.asset, job.surface, job.cut, pool_),
+      images_(job.asset, job.limits, job.report, job.cut.pages.size() > 1 ? kept_images : 0), by_page_(job.cut) {
   primitive_of_.reserve(job.cut.triangles.size());
   for (std::size_t t = 0; t < job.cut.triangles.size(); ++t) primitive_of_.push_back(values_.primitive(t));
   if (&job.shown.cut != &job.cut) delivered_by_page_.emplace(job.shown.cut);

@@ -55,6 +55,7 @@ public:
   // The charts of the page.
   [[nodiscard]] std::span<const std::uint32_t> charts() const { return by_page_.charts(page_); }
   [[nodiscard]] CornerValues& values() { return values_; }
+  [[nodiscard]] ImageDecoder& images() { return images_; }
   [[nodiscard]] std::span<const std::uint32_t> primitive_of() const { return primitive_of_; }
   [[nodiscard]] mesh::ThreadPool& pool() { return pool_; }
 
@@ -85,6 +86,7 @@ private:
   const BakeJob& job_;
   mesh::ThreadPool pool_;
   CornerValues values_;
+  ImageDecoder images_;
   std::vector<std::uint32_t> primitive_of_; // by delivered triangle
   MeshByPage by_page_;
   std::optional<MeshByPage> delivered_by_page_; // where these triangles are others
