@@ -148,13 +148,15 @@ void GeometryMaps::bake_normals_of_levels(const texture::NormalSource& source, c
   }
 }
 
-// The primitives whose normal map is baked: with maps=auto those that have one, by name all. Not where other textures
+// The primitives whose normal map is baked: with maps=auto those that have one, and all of a remesh, whose triangles
+// lie across the input's (a morph's second shape would show the first one's); by name all. Not where other textures
 // depend on the TANGENT that would change.
 std::vector<bool> GeometryMaps::takes_normal_map(const SlotTextures& textures) const {
   std::vector<bool> out(textures.size());
   for (std::size_t p = 0; p < out.size(); ++p) {
     const bool named = job_.options().maps.names(Map::normal);
-    if (!page_.shows(p) || !(named || (job_.options().maps.automatic && textures[p]))) continue;
+    const bool is_remesh = job_.options().remesh.base != RemeshTarget::Base::none && job_.options().morph_to.empty();
+    if (!page_.shows(p) || !(named || (job_.options().maps.automatic && (textures[p] || is_remesh)))) continue;
     out[p] = !asset::shares_tangents(job_.asset, job_.asset.primitives[p]);
     if (out[p]) continue;
     job_.report.notes.push_back({"normal-map-kept",

@@ -1,7 +1,9 @@
 #include "core/steps/morph.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -175,6 +177,29 @@ Attribute differences(const Attribute& before, std::span<const Vec3d> after, std
   return out;
 }
 
+double diagonal_of(std::span<const Vec3f> positions) {
+  Vec3d low(positions[0]), high = low;
+  for (const Vec3f& p : positions) {
+    low = {std::min(low.x, double{p.x}), std::min(low.y, double{p.y}), std::min(low.z, double{p.z})};
+    high = {std::max(high.x, double{p.x}), std::max(high.y, double{p.y}), std::max(high.z, double{p.z})};
+  }
+  return norm(high - low);
+}
+
+// Models in different units make a morph that grows by a hundred times: nothing is wrong with it, but it is hardly
+// meant.
+void note_sizes(const mesh::TriangleMesh& first, const mesh::TriangleMesh& second, Report& report) {
+  constexpr double suspicious = 4;
+  const double ratio = diagonal_of(second.positions) / diagonal_of(first.positions);
+  if (ratio < suspicious && 1 / ratio < suspicious) return;
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", ratio);
+  report.notes.push_back(
+      {"morph-sizes",
+       "the second model is " + std::string(text.data()) + " times as large as the first: are both in the same units?",
+       report.options.morph_to});
+}
+
 void measure(const MorphEnd& end, const mesh::TriangleMesh& shape, Report& report) {
   const auto positions_of = [](const mesh::TriangleMesh& mesh) {
     std::vector<Vec3d> out;
@@ -182,15 +207,10 @@ void measure(const MorphEnd& end, const mesh::TriangleMesh& shape, Report& repor
     return out;
   };
   const std::vector<Vec3d> full = positions_of(end.surface.mesh);
-  Vec3d low = full[0], high = full[0];
-  for (const Vec3d& p : full) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
   mesh::ThreadPool pool(report.options.threads);
   const lod::Distances d =
       lod::distances_between(positions_of(shape), shape.triangles, full, end.surface.mesh.triangles, pool);
-  const double diagonal = norm(high - low);
+  const double diagonal = diagonal_of(end.surface.mesh.positions);
   report.morph->mean_distance = 100 * d.to_full / diagonal;
   report.morph->mean_distance_from_input = 100 * d.from_full / diagonal;
   report.morph->hausdorff_distance = 100 * d.hausdorff / diagonal;
@@ -228,6 +248,7 @@ std::optional<MorphEnd> read_morph_end(const Request& request, const Limits& lim
     report.notes.push_back({note.code, "the second model: " + note.message, note.where});
   for (const Note& note : own.notes)
     report.notes.push_back({note.code, "the second model: " + note.message, note.where});
+  note_sizes(first.mesh, end.surface.mesh, report);
   report.morph = Report::Morph{};
   report.morph->format = std::string(name_of(end.asset.format));
   report.morph->input_triangles = own.input_triangles;

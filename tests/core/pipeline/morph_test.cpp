@@ -71,6 +71,18 @@ TEST_CASE("the mesh is the first model at weight 0 and the second at weight 1, o
   CHECK(json.find(R"("targetNames":["ball"])") != std::string::npos);
 }
 
+TEST_CASE("models of very different sizes are noted: they may be in different units") {
+  const auto is_noted = [](float scale) {
+    mesh::TriangleMesh large = shapes::sphere(2);
+    for (Vec3f& p : large.positions) p *= scale;
+    return std::ranges::any_of(run(shapes::sphere(2), large).report.notes,
+                               [](const Note& n) { return n.code == "morph-sizes"; });
+  };
+  CHECK(is_noted(100));
+  CHECK(is_noted(0.01F));
+  CHECK(!is_noted(2));
+}
+
 TEST_CASE("features meet: the vertex at the first model's point goes to the second's") {
   // A thorn of the first model is to become a point far from its direction.
   mesh::TriangleMesh thorn = shapes::bumpy_sphere(4);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/asset/asset.h"
+#include "core/asset/glb.h"
 #include "core/asset/image_codec.h"
 #include "core/pipeline.h"
 #include "support/defects.h"
@@ -27,6 +28,11 @@ Result run(const std::vector<std::byte>& glb, std::string_view target,
 }
 
 asset::Primitive primitive_of(const Result& result) { return asset::read_asset(result.glb, {}, {}).primitives.at(0); }
+
+std::string document_of(const Result& result) {
+  const auto text = asset::split_glb(result.glb).json;
+  return {reinterpret_cast<const char*>(text.data()), text.size()};
+}
 
 bool has_note(const Result& result, std::string_view code) {
   return std::ranges::any_of(result.report.notes, [&](const Note& n) { return n.code == code; });
@@ -147,6 +153,12 @@ TEST_CASE("skins come along, and levels of detail and normal maps can be made of
     for (std::uint32_t c = 0; c < 4; ++c) sum += p.find("WEIGHTS_0")->get(v, c);
     CHECK(sum == doctest::Approx(1).epsilon(1e-5));
   }
+}
+
+TEST_CASE("a remesh has the input's shading in a normal map, unless the maps are named without one") {
+  const std::vector<std::byte> input = glb_of(shapes::bumpy_sphere(3));
+  CHECK(document_of(run(input, "octahedral:3")).find("normalTexture") != std::string::npos);
+  CHECK(document_of(run(input, "octahedral:3", {{"maps", "base_color"}})).find("normalTexture") == std::string::npos);
 }
 
 TEST_CASE("what cannot be remeshed is refused with its reason, and the same job gives the same bytes") {
