@@ -8,6 +8,7 @@
 #include <set>
 
 #include "api/json.h"
+#include "core/check_options.h"
 #include "core/model_format.h"
 
 namespace orbis::api {
@@ -107,6 +108,13 @@ void check_format(const Part& model) {
   throw Refused(make_problem(Error(ErrorCode::unsupported_format, unrecognised(head, model.bytes))));
 }
 
+// What the options need is looked for among the files at once, not when the work comes to it.
+void check_options_of(const Submission& submission) {
+  std::vector<std::string_view> names;
+  for (const Part& file : submission.files) names.emplace_back(file.file_name);
+  check_options(submission.options, names);
+}
+
 // Options, the model (its name is empty where there is none), and the other parts as files.
 Submission parse_parts(const Request& request, std::string_view model_name) {
   Submission submission;
@@ -168,6 +176,9 @@ Submission parse_submission(const Request& request) {
            "there is no model: send it as the body, or as the part 'model' of multipart/form-data");
   }
   check_format(submission.model);
+  check_options_of(submission);
+  if (!submission.options.morph_to.empty())
+    check_format(*std::ranges::find(submission.files, submission.options.morph_to, &Part::file_name));
   return submission;
 }
 
@@ -185,6 +196,7 @@ Submission parse_morph(const Request& request) {
   check_format(submission.model);
   check_format(*second);
   submission.options.morph_to = second->file_name;
+  check_options_of(submission);
   return submission;
 }
 

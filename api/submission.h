@@ -15,7 +15,7 @@ void check_media_type(const Request& request);
 //
 // Throws Refused: bad_request (no model, two models, bad options JSON), invalid_option with one entry in `errors` for
 // each bad option, unsupported_format where the model's first bytes are of no format that orbis reads
-// (core/model_format.h).
+// (core/model_format.h). Throws Error as check_options does (core/check_options.h).
 [[nodiscard]] Submission parse_submission(const Request& request);
 
 // POST /v1/morphs: the parts `a` and `b` are the models; b goes with the job as the file that options.morph_to names.

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include "core/asset/asset.h"
+#include "core/check_options.h"
 #include "core/steps/archive.h"
 #include "core/steps/bake_maps.h"
 #include "core/steps/delivery.h"
@@ -40,6 +41,12 @@ std::vector<Vec3f> deliverable(std::span<const sphere::GridPoint> points) {
 
 } // namespace
 
+std::vector<std::string_view> Request::file_names() const {
+  std::vector<std::string_view> out;
+  for (const auto& [name, bytes] : files) out.emplace_back(name);
+  return out;
+}
+
 Result process(const Request& request, const Limits& limits, Progress& progress, Checkpoints& checkpoints,
                const StageDump& dump) {
   StageClock clock(progress);
@@ -48,6 +55,7 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   report.options = request.options;
 
   clock.report(Stage::decode, 0, 1);
+  check_options(request.options, request.file_names());
   asset::Asset asset = asset::read_asset(request.model, request.files, limits);
   describe_input(asset, report);
 

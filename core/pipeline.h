@@ -22,6 +22,8 @@ struct Request {
   // ("px", "nx", "py", "ny", "pz", "nz", any extension) or one "equirectangular".
   std::map<std::string, std::vector<std::byte>, std::less<>> files;
   Options options;
+
+  [[nodiscard]] std::vector<std::string_view> file_names() const;
 };
 
 // A map that was baked: "normal.png" and its contents.

@@ -221,22 +221,10 @@ void measure(const MorphEnd& end, const mesh::TriangleMesh& shape, Report& repor
 std::optional<MorphEnd> read_morph_end(const Request& request, const Limits& limits, const Surface& first,
                                        Progress& progress, Report& report) {
   const std::string& file = request.options.morph_to;
-  if (file.empty()) {
-    if (!request.options.features.empty())
-      throw Error(ErrorCode::invalid_option,
-                  "features are points of two models, and there is no second one: see morph_to", "features");
-    return std::nullopt;
-  }
-  if (request.options.sphere_morph)
-    throw Error(ErrorCode::invalid_option, "a morph to a second model cannot have the target of sphere_morph beside it",
-                "sphere_morph");
-  const auto found = request.files.find(file);
-  if (found == request.files.end())
-    throw Error(ErrorCode::missing_resource, "the second model, '" + file + "', did not come with the request",
-                "morph_to");
+  if (file.empty()) return std::nullopt;
   check_is_one_sphere(first, "first");
 
-  MorphEnd end{stem_of(file), asset::read_asset(found->second, request.files, limits), {}, {}};
+  MorphEnd end{stem_of(file), asset::read_asset(request.files.at(file), request.files, limits), {}, {}};
   Report own; // what is said of the second model
   own.options = request.options;
   end.surface = make_surface(end.asset, own);

@@ -22,9 +22,9 @@ struct MorphEnd {
 
 // With options.morph_to: reads that file of the request, repairs its surface and maps it to the sphere, by the same
 // options as the first model. `first`: the first model's surface; both must be one closed component of genus 0 in one
-// primitive, after repair. Nothing without the option. Fills report.morph but for what is measured later. Throws Error:
-// missing_resource where the file did not come, invalid_option with sphere_morph, not_genus_zero that says which model
-// has what, and what reading and mapping the second model throws.
+// primitive, after repair. The file is there (core/check_options.h). Nothing without the option. Fills report.morph but
+// for what is measured later. Throws Error: not_genus_zero that says which model has what, and what reading and mapping
+// the second model throws.
 [[nodiscard]] std::optional<MorphEnd> read_morph_end(const Request& request, const Limits& limits, const Surface& first,
                                                      Progress& progress, Report& report);
 

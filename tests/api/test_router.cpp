@@ -113,9 +113,9 @@ TEST_CASE_FIXTURE(Desk,
 
 TEST_CASE_FIXTURE(Desk, "a list in the options part is what the query would have with commas") {
   const auto response =
-      post({part("model", "m.glb", "glTF...."),
-            part("options", "",
-                 R"({"lods": [0.5, 0.25], "maps": ["normal", "position"], "features": [[[0,0,1],[0,0,2]]]})")});
+      post({part("model", "m.glb", "glTF...."), part("file", "b.glb", "glTF...."),
+            part("options", "", R"({"lods": [0.5, 0.25], "maps": ["normal", "position"], "morph_to": "b.glb",
+                 "features": [[[0,0,1],[0,0,2]]]})")});
   CHECK(response.status == 202);
   CHECK(body_of(response)["options"]["lods"] == "0.5,0.25");
   CHECK(body_of(response)["options"]["maps"] == "normal,position");
@@ -208,6 +208,29 @@ TEST_CASE_FIXTURE(Desk, "the format is recognised by content, and what cannot be
   const auto refused = post({part("model", "", "hello")});
   CHECK(refused.status == 415);
   CHECK(body_of(refused)["detail"].get<std::string>().find("STL") != std::string::npos);
+}
+
+// A job that could not work was accepted, and failed after the whole unfolding.
+TEST_CASE_FIXTURE(Desk, "options that need a file which did not come, or each other, are refused at the door") {
+  const auto refused = [&](api::Fields query, std::vector<api::Part> files = {}) {
+    files.push_back(part("model", "", "glTF...."));
+    const auto response = post(std::move(files), std::move(query));
+    CHECK(response.status == 422);
+    const json problem = body_of(response);
+    return problem["type"].get<std::string>() + " " + problem["errors"][0]["pointer"].get<std::string>();
+  };
+  CHECK(refused({{"texture", "cubemap"}}) == "/problems/missing-resource /texture");
+  CHECK(refused({{"texture", "cubemap"}}, {part("file", "px.png", "1")}) == "/problems/missing-resource /texture");
+  CHECK(refused({{"morph_to", "x.glb"}}) == "/problems/missing-resource /morph_to");
+  CHECK(refused({{"features", "[[[0,0,1],[0,0,2]]]"}}) == "/problems/invalid-option /features");
+  CHECK(refused({{"morph_to", "x.glb"}, {"sphere_morph", "true"}}, {part("file", "x.glb", "glTF....")}) ==
+        "/problems/invalid-option /sphere_morph");
+  CHECK(service.submissions.empty());
+  CHECK(post({part("model", "", "glTF...."), part("file", "x.glb", "hello")}, {{"morph_to", "x.glb"}}).status == 415);
+  CHECK(post({part("model", "", "glTF...."), part("file", "x.glb", "glTF....")}, {{"morph_to", "x.glb"}}).status ==
+        202);
+  CHECK(post({part("model", "", "glTF...."), part("file", "equirectangular.jpg", "1")}, {{"texture", "cubemap"}})
+            .status == 202);
 }
 
 TEST_CASE_FIXTURE(Desk, "media types that are not in the contract are refused before the body is read") {
