@@ -14,8 +14,10 @@
 #include "core/steps/measure.h"
 #include "core/steps/mirrored_tangents.h"
 #include "core/steps/morph.h"
+#include "core/steps/paint.h"
 #include "core/steps/preview.h"
 #include "core/steps/remesh.h"
+#include "core/steps/remesh_plan.h"
 #include "core/steps/snap_and_cut.h"
 #include "core/steps/sphere_morph.h"
 #include "core/steps/stage_clock.h"
@@ -58,16 +60,21 @@ Result process(const Request& request, const Limits& limits, Progress& progress,
   check_options(request.options, request.file_names());
   asset::Asset asset = asset::read_asset(request.model, request.files, limits);
   describe_input(asset, report);
+  check_texture(request, asset, limits);
 
   clock.report(Stage::topology, 0, 1);
   Surface surface = make_surface(asset, report);
   dump_mesh(dump, "1-surface.obj", surface.mesh.positions, surface.mesh.triangles);
 
+  // What can be refused is refused before the long part, which begins with the embedding.
+  std::optional<MorphEnd> end = read_morph_end(request, limits, surface);
+  const RemeshTarget target = end ? common_target(request.options, surface, end->surface) : request.options.remesh;
+  (void)plan_remesh(surface, target, limits);
+
   std::vector<Vec3d> points = embed(surface, request.options, clock, checkpoints, report);
-  const std::optional<MorphEnd> end = read_morph_end(request, limits, surface, clock, report);
+  if (end) embed_morph_end(*end, clock, report);
 
   clock.report(Stage::atlas, 0, 1);
-  const RemeshTarget target = end ? common_target(request.options, surface, end->surface) : request.options.remesh;
   const std::optional<RemeshSource> source = resample(asset, surface, points, target, limits, clock, report);
   if (end) add_morph_target(*end, *source, surface, points, asset, clock, report);
   const CutSphere sphere = snap_and_cut(asset, surface, points, request.options, clock, report);

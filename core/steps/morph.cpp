@@ -218,29 +218,28 @@ void measure(const MorphEnd& end, const mesh::TriangleMesh& shape, Report& repor
 
 } // namespace
 
-std::optional<MorphEnd> read_morph_end(const Request& request, const Limits& limits, const Surface& first,
-                                       Progress& progress, Report& report) {
+std::optional<MorphEnd> read_morph_end(const Request& request, const Limits& limits, const Surface& first) {
   const std::string& file = request.options.morph_to;
   if (file.empty()) return std::nullopt;
   check_is_one_sphere(first, "first");
-
-  MorphEnd end{stem_of(file), asset::read_asset(request.files.at(file), request.files, limits), {}, {}};
-  Report own; // what is said of the second model
-  own.options = request.options;
-  end.surface = make_surface(end.asset, own);
+  MorphEnd end{stem_of(file), asset::read_asset(request.files.at(file), request.files, limits), {}, {}, {}};
+  end.report.options = request.options;
+  end.surface = make_surface(end.asset, end.report);
   check_is_one_sphere(end.surface, "second");
+  return end;
+}
+
+void embed_morph_end(MorphEnd& end, Progress& progress, Report& report) {
   OnlyCancellation quiet(progress);
   NoCheckpoints none; // they are the first model's
-  end.points = embed(end.surface, request.options, quiet, none, own);
+  end.points = embed(end.surface, report.options, quiet, none, end.report);
   for (const asset::Asset::Note& note : end.asset.notes)
     report.notes.push_back({note.code, "the second model: " + note.message, note.where});
-  for (const Note& note : own.notes)
+  for (const Note& note : end.report.notes)
     report.notes.push_back({note.code, "the second model: " + note.message, note.where});
-  note_sizes(first.mesh, end.surface.mesh, report);
   report.morph = Report::Morph{};
   report.morph->format = std::string(name_of(end.asset.format));
-  report.morph->input_triangles = own.input_triangles;
-  return end;
+  report.morph->input_triangles = end.report.input_triangles;
 }
 
 RemeshTarget common_target(const Options& options, const Surface& first, const Surface& second) {
@@ -253,6 +252,7 @@ RemeshTarget common_target(const Options& options, const Surface& first, const S
 
 void add_morph_target(const MorphEnd& end, const RemeshSource& source, const Surface& surface,
                       std::span<const Vec3d> points, asset::Asset& asset, Progress& progress, Report& report) {
+  note_sizes(surface.mesh, end.surface.mesh, report);
   mesh::ThreadPool pool(report.options.threads);
   std::vector<Vec3d> directions = SphereMatch(end, source, report).run(surface, points);
   const std::vector<VertexSource> sources =

@@ -12,21 +12,24 @@
 
 namespace orbis {
 
-// The second model, on its sphere.
+// The second model.
 struct MorphEnd {
   std::string name; // of the target: that of the file, without its ending
   asset::Asset asset;
   Surface surface; // one component
   std::vector<Vec3d> points;
+  Report report; // what is said of it
 };
 
-// With options.morph_to: reads that file of the request, repairs its surface and maps it to the sphere, by the same
-// options as the first model. `first`: the first model's surface; both must be one closed component of genus 0 in one
-// primitive, after repair. The file is there (core/check_options.h). Nothing without the option. Fills report.morph but
-// for what is measured later. Throws Error: not_genus_zero that says which model has what, and what reading and mapping
-// the second model throws.
-[[nodiscard]] std::optional<MorphEnd> read_morph_end(const Request& request, const Limits& limits, const Surface& first,
-                                                     Progress& progress, Report& report);
+// With options.morph_to: reads that file of the request, which is there (core/check_options.h), and repairs its
+// surface. Nothing without the option. `first`: the first model's surface; both must be one closed component of genus 0
+// in one primitive, after repair. Throws Error: not_genus_zero that says which model has what, and what reading throws.
+[[nodiscard]] std::optional<MorphEnd> read_morph_end(const Request& request, const Limits& limits,
+                                                     const Surface& first);
+
+// Maps it to the sphere by the same options as the first model. Fills report.morph but for what is measured later, and
+// takes over the notes.
+void embed_morph_end(MorphEnd& end, Progress& progress, Report& report);
 
 // The triangulation that both share: options.remesh, or where that is none the icosahedron divided until it has as many
 // triangles as the finer model.

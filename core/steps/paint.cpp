@@ -1,5 +1,7 @@
 #include "core/steps/paint.h"
 
+#include <algorithm>
+
 #include "core/asset/image_codec.h"
 #include "core/check_options.h"
 #include "core/texture/bake.h"
@@ -30,6 +32,15 @@ std::vector<Image> uploaded_images(const Request& request, const Limits& limits)
   for (const std::string_view name : cube_map_files(request.file_names()))
     images.push_back(asset::decode_image(request.files.find(name)->second, limits.max_image_pixels, name));
   return images;
+}
+
+void check_texture(const Request& request, const asset::Asset& asset, const Limits& limits) {
+  // They are read once more when they are baked: kept until then, they would take memory from the unfolding.
+  (void)uploaded_images(request, limits);
+  (void)source_name(request.options, std::ranges::any_of(asset.primitives, [&](const asset::Primitive& p) {
+                      return p.find("COLOR_0") != nullptr ||
+                             asset::material_texture(asset, p, asset::TextureSlot::base_color).has_value();
+                    }));
 }
 
 Image paint(std::span<const Image> uploaded, const texture::TexelMap& map, const texture::CutMesh& cut,

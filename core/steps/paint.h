@@ -26,6 +26,10 @@ namespace orbis {
 // come; malformed, unsupported_format or too_large for one that cannot be read.
 [[nodiscard]] std::vector<texture::Image> uploaded_images(const Request& request, const Limits& limits);
 
+// Throws now what the two above would throw when it comes to baking, after the long part of the work: for uploaded
+// images, and for a model that no primitive's colours or textures give a base colour.
+void check_texture(const Request& request, const asset::Asset& asset, const Limits& limits);
+
 // A page with the uploaded images on it, or where there are none with the test pattern. map: the page's.
 [[nodiscard]] texture::Image paint(std::span<const texture::Image> uploaded, const texture::TexelMap& map,
                                    const texture::CutMesh& cut, std::uint32_t page, const Progress& progress,

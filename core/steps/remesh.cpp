@@ -11,30 +11,12 @@
 #include "core/remesh/polyhedron.h"
 #include "core/remesh/sphere_tree.h"
 #include "core/steps/interpolate.h"
+#include "core/steps/remesh_plan.h"
 
 namespace orbis {
 namespace {
 
 constexpr std::size_t samples_a_block = 1024;
-
-double area_of(const mesh::TriangleMesh& mesh) {
-  double sum = 0;
-  for (const auto& [i, j, k] : mesh.triangles) {
-    const Vec3d a(mesh.positions[i]), b(mesh.positions[j]), c(mesh.positions[k]);
-    sum += norm(cross(b - a, c - a)) / 2;
-  }
-  return sum;
-}
-
-// Why a component keeps its triangles; empty where it need not.
-std::string reason_to_keep(const Surface& surface, const Component& c) {
-  if (c.has_caps()) return "it has holes, handles or cracks, so that parts of its sphere stand for no surface";
-  for (std::uint32_t t = c.first_triangle; t < c.end_triangle(); ++t) {
-    if (surface.primitive_of[t] != surface.primitive_of[c.first_triangle])
-      return "its triangles belong to several primitives";
-  }
-  return {};
-}
 
 // A component on its way: the polyhedron, and where its vertices lie on the component.
 struct Remade {
@@ -49,23 +31,9 @@ public:
       : from_(from), target_(target), report_(report), pool_(report.options.threads) {}
 
   void choose(const Limits& limits) {
-    std::map<std::string, std::pair<std::uint64_t, std::uint32_t>> kept; // reason -> components, mesh of the first
-    double largest = 0;
-    std::vector<double> areas;
-    for (const Component& c : from_.surface.components) {
-      const std::string reason = reason_to_keep(from_.surface, c);
-      if (!reason.empty()) ++kept.try_emplace(reason, 0, c.mesh).first->second.first;
-      areas.push_back(reason.empty() ? area_of(mesh_of(from_.surface, c)) : 0);
-      largest = std::max(largest, areas.back());
-    }
-    if (!(largest > 0)) refuse(kept.empty() ? "it has no area" : kept.begin()->first);
-    for (const auto& [reason, found] : kept) {
-      report_.notes.push_back({"remesh-kept",
-                               std::to_string(found.first) + " components kept their triangles: " + reason,
-                               "/meshes/" + std::to_string(found.second)});
-    }
-    for (const double area : areas) times_.push_back(area > 0 ? times_for(area / largest) : 0);
-    check_size(limits);
+    RemeshPlan plan = plan_remesh(from_.surface, target_, limits);
+    times_ = std::move(plan.times);
+    report_.notes.insert(report_.notes.end(), plan.kept.begin(), plan.kept.end());
   }
 
   void sample(Progress& progress) {
@@ -145,30 +113,6 @@ public:
   }
 
 private:
-  [[noreturn]] static void refuse(const std::string& reason) {
-    throw Error(ErrorCode::not_genus_zero,
-                "no component can be remeshed: " + reason + "; closed components of genus 0 of one primitive can",
-                "remesh");
-  }
-
-  // As many divisions as make its triangles about as large as those of the largest component.
-  [[nodiscard]] std::uint32_t times_for(double part) const {
-    const double fewer = std::round(-std::log2(part) / 2);
-    const double times = target_.times;
-    return static_cast<std::uint32_t>(std::max(1.0, times - fewer));
-  }
-
-  void check_size(const Limits& limits) const {
-    std::uint64_t triangles = 0;
-    for (const std::uint32_t times : times_)
-      if (times > 0) triangles += remesh::triangles_of(target_.base, times);
-    if (triangles <= limits.max_triangles) return;
-    throw Error(ErrorCode::too_large,
-                "the remesh would have " + std::to_string(triangles) + " triangles; the limit is " +
-                    std::to_string(limits.max_triangles),
-                "remesh");
-  }
-
   void sample(std::size_t i, Progress& progress) {
     const Component& c = from_.surface.components[i];
     const mesh::TriangleMesh mesh = mesh_of(from_.surface, c);

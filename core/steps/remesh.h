@@ -25,9 +25,8 @@ struct RemeshSource {
 // had come that way, and what follows need not know. Returns what they were; nothing, and changes nothing, where the
 // target has no base. target: of the component with the largest area.
 //
-// A component stays as it is where it has caps (its sphere is not all surface) or several primitives; its reason is
-// noted. Triangles that only ride on a remeshed component are gone. Fills report.remesh. Throws Error: not_genus_zero
-// where no component can be remeshed, too_large where the triangles would be more than the limits allow.
+// Which components, and how finely: plan_remesh (core/steps/remesh_plan.h), whose errors it throws; why others stay as
+// they are is noted. Triangles that only ride on a remeshed component are gone. Fills report.remesh.
 [[nodiscard]] std::optional<RemeshSource> resample(asset::Asset& asset, Surface& surface, std::vector<Vec3d>& points,
                                                    const RemeshTarget& target, const Limits& limits, Progress& progress,
                                                    Report& report);
