@@ -382,8 +382,10 @@ int HttpServer::bind() {
                    : impl_->bind_to_port(settings.host, settings.port) ? settings.port
                                                                        : -1;
   if (port < 0) {
-    throw Error(ErrorCode::internal, "cannot listen on " + settings.host + " port " + std::to_string(settings.port) +
-                                         ": the address is taken, or not of this machine");
+    throw Error(ErrorCode::invalid_option,
+                "cannot listen on " + settings.host + " port " + std::to_string(settings.port) +
+                    ": the address is taken, or not of this machine",
+                "port");
   }
   return port;
 }

@@ -22,9 +22,12 @@ FileDescriptor lock_data(const std::filesystem::path& data) {
   std::error_code error;
   std::filesystem::create_directories(data, error);
   FileDescriptor lock(::open((data / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
-  if (!lock.is_open()) throw Error(ErrorCode::internal, "the data directory '" + data.string() + "' cannot be written");
+  if (!lock.is_open())
+    throw Error(ErrorCode::invalid_option, "the data directory '" + data.string() + "' cannot be written", "data");
   if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
-    throw Error(ErrorCode::internal, "another orbis serves the data directory '" + data.string() + "'");
+    throw Error(ErrorCode::invalid_option,
+                "another orbis serves the data directory '" + data.string() + "'; give this one a directory of its own",
+                "data");
   }
   return lock;
 }

@@ -106,3 +106,14 @@ test_an_unknown_setting_is_refused_at_the_start() {
   expect_match "the exit status" "$EXIT" '^[12]$'
   grep -q no-such-setting "$work/start.err" || fail "the message does not name it: $(cat "$work/start.err")"
 }
+
+test_a_data_directory_that_another_service_holds_is_refused_by_name() {
+  [ -z "${ORBIS_IMAGE:-}" ] || skip "two containers see different directories"
+  start_service held
+  local exit=0
+  "$orbis" serve --port 0 --data "$work/held" 2>"$work/second.err" || exit=$?
+  expect "the exit status" "$exit" 2
+  expect "the problem" "$(jq --raw-output .type "$work/second.err")" /problems/invalid-option
+  expect_match "the detail" "$(jq --raw-output .detail "$work/second.err")" "another orbis serves.*$work/held"
+  stop_service
+}
