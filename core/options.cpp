@@ -89,6 +89,16 @@ E choice(std::string_view name, std::string_view text, const std::array<std::str
   refuse(name, text);
 }
 
+// One item at least; beside a comma it may be empty.
+std::vector<std::string_view> between_commas(std::string_view list) {
+  std::vector<std::string_view> items;
+  for (std::size_t begin = 0, end = 0; end < list.size() || items.empty(); begin = end + 1) {
+    end = std::min(list.find(',', begin), list.size());
+    items.push_back(list.substr(begin, end - begin));
+  }
+  return items;
+}
+
 constexpr std::array<std::string_view, 4> objectives{"isometric", "conformal", "stretch", "shape-preserving"};
 constexpr std::array<std::string_view, 3> qualities{"draft", "standard", "high"};
 constexpr std::array<std::string_view, 4> sources{"auto", "pattern", "cubemap", "base_color"};
@@ -100,6 +110,7 @@ constexpr std::array<std::string_view, 2> outputs{"glb", "zip"};
 
 // "0.25", "5000" or "deviation:0.1".
 LodTarget lod_target(std::string_view list, std::string_view text) {
+  if (text.empty()) refuse("lods", list, "there is no level before or after one of its commas");
   const std::string item = std::string("'").append(text.substr(0, 64)).append("' ");
   constexpr std::string_view deviation = "deviation:";
   const bool is_deviation = text.starts_with(deviation);
@@ -120,10 +131,9 @@ LodTarget lod_target(std::string_view list, std::string_view text) {
 
 std::vector<LodTarget> lod_targets(std::string_view list) {
   std::vector<LodTarget> targets;
-  for (std::string_view rest = list; !rest.empty();) {
-    const std::size_t comma = std::min(rest.find(','), rest.size());
-    targets.push_back(lod_target(list, rest.substr(0, comma)));
-    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  if (list.empty()) return targets;
+  for (const std::string_view item : between_commas(list)) {
+    targets.push_back(lod_target(list, item));
     // Of one kind they must get coarser.
     for (const LodTarget& before : std::span(targets).first(targets.size() - 1)) {
       const LodTarget& last = targets.back();
@@ -270,9 +280,7 @@ std::string text_of(const std::vector<FeaturePair>& features) {
 MapSelection maps_of(std::string_view text) {
   MapSelection maps;
   maps.automatic = false;
-  std::string_view rest = text;
-  while (true) {
-    const std::string_view name = rest.substr(0, rest.find(','));
+  for (const std::string_view name : between_commas(text)) {
     if (name == "auto") {
       maps.automatic = true;
     } else if (name == "all") {
@@ -284,9 +292,8 @@ MapSelection maps_of(std::string_view text) {
     } else {
       maps.named[static_cast<std::size_t>(choice<Map>("maps", name, map_names))] = true;
     }
-    if (name.size() == rest.size()) return maps;
-    rest.remove_prefix(name.size() + 1);
   }
+  return maps;
 }
 
 std::string text_of(const MapSelection& maps) {
