@@ -10,9 +10,10 @@ namespace {
 
 constexpr double farthest = 256; // diagonals
 
-std::string shortest(double value) {
-  std::array<char, 32> digits{};
-  char* const end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+// All its digits: nobody writes a survey's coordinates as 4e+05.
+std::string plain(double value) {
+  std::array<char, 128> digits{}; // more than any float32 takes
+  char* const end = std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed).ptr;
   return {digits.data(), end};
 }
 
@@ -47,8 +48,7 @@ void note_origin(const Vec3d& origin, std::vector<Asset::Note>& notes) {
       {"origin-moved",
        "the model lies so far from its origin that float32 coordinates, which glTF has, would run together; "
        "they are measured from (" +
-           shortest(origin.x) + ", " + shortest(origin.y) + ", " + shortest(origin.z) +
-           "), which is its nodes' translation",
+           plain(origin.x) + ", " + plain(origin.y) + ", " + plain(origin.z) + "), which is its nodes' translation",
        ""});
 }
 

@@ -58,6 +58,12 @@ TEST_CASE("OBJ: what lies far away keeps its shape, and its place by the nodes' 
   CHECK_NOTHROW(test::write_unchanged(asset));
 }
 
+TEST_CASE("the note of a moved origin has the coordinates as a surveyor writes them") {
+  const Asset asset = read("v 400000.1 5200000.3 1.5\nv 399999.9 5200000.3 1.5\nv 400000.1 5199999.7 1.5\nf 1 2 3\n");
+  REQUIRE(has_note(asset));
+  CHECK(asset.notes.front().message.find("(400000, 5200000, 0)") != std::string::npos);
+}
+
 TEST_CASE("OBJ: a polygon far away is divided by its shape, not by what float32 leaves of it") {
   // An arrow whose notch is smaller than float32's steps there; cut the wrong way, a triangle lies upside down.
   const Asset asset = read("v 500000 4649776 0\nv 500000.3 4649776 0\nv 500000.1 4649776.1 0\nv 500000 4649776.3 0\n"
