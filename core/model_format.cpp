@@ -77,10 +77,11 @@ std::optional<ModelFormat> recognise(std::string_view head, std::uint64_t size) 
 
 std::string unrecognised(std::string_view head, std::uint64_t size) {
   std::string text = "the model is none of GLB, glTF JSON, Draco, OBJ, PLY, STL and zip; convert it to one of these";
-  const std::uint64_t count = binary_stl_triangles(head);
-  if (count == 0 || is_text(head.substr(0, format_head_bytes))) return text;
+  const std::uint64_t count = binary_stl_triangles(head), counted = binary_stl_size(count);
+  const bool is_near = size < 2 * counted && counted < 2 * size;
+  if (count == 0 || !is_near || is_text(head.substr(0, format_head_bytes))) return text;
   text.append(". If it is a binary STL: its header counts ").append(std::to_string(count));
-  text.append(" triangles, which take ").append(std::to_string(binary_stl_size(count)));
+  text.append(" triangles, which take ").append(std::to_string(counted));
   return text.append(" bytes, but there are ").append(std::to_string(size));
 }
 

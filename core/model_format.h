@@ -22,7 +22,7 @@ inline constexpr std::uint64_t format_head_bytes = 4096;
 [[nodiscard]] std::optional<ModelFormat> recognise(std::string_view head, std::uint64_t size);
 
 // What is said of a file that recognise() knows nothing of. A file with bytes that are no text may be a binary STL that
-// was cut off or added to: its size is then held against its count.
+// was cut off or added to: where its size is near what its count says, at most a factor of 2 away, both are told.
 [[nodiscard]] std::string unrecognised(std::string_view head, std::uint64_t size);
 
 // A binary STL is 80 bytes of anything, a count, and 50 bytes a triangle. Some begin with "solid" like the textual
