@@ -9,6 +9,15 @@ let current = null; // the address of the job that is shown
 
 const foremost = ["objective", "quality", "texture", "texture_size"];
 
+// What is to be written into the fields that offer no choice.
+const hints = {
+  maps: "auto, all, or names with commas between them: base_color, metallic_roughness, occlusion, emissive, normal, object_normal, ambient_occlusion, position, displacement",
+  lods: "Parts of the triangles, their numbers, or deviation:0.1 in per cent of the diagonal, with commas between them: 0.25,0.05,0.01",
+  remesh: "none, octahedral:N or icosahedral:N, with N from 1 to 8",
+  morph_to: "The file name of a second model, chosen along with the first: horse.glb",
+  features: "With a second model: pairs of points, the first model's and then the second's: [[[0,0,1],[0,0,2]]]",
+};
+
 function fieldFor(name, schema) {
   const choices = schema.type === "boolean" ? ["false", "true"] : schema.enum;
   const field = document.createElement(choices ? "select" : "input");
@@ -29,16 +38,28 @@ function fieldFor(name, schema) {
   return field;
 }
 
+// A field under its name, and where it is free text its format below.
+function labelled(name, field) {
+  const texts = {jpeg_quality: "JPEG quality", lods: "Levels of detail", maps: "Maps to bake"};
+  const label = document.createElement("label");
+  const plain = name.replaceAll("_", " ");
+  label.textContent = texts[name] ?? plain[0].toUpperCase() + plain.slice(1);
+  label.append(field);
+  if (!hints[name]) return label;
+  const box = document.createElement("div"), hint = document.createElement("small");
+  hint.id = `hint-${name}`;
+  hint.textContent = hints[name];
+  field.setAttribute("aria-describedby", hint.id);
+  box.append(label, hint);
+  return box;
+}
+
 async function buildOptions() {
   const contract = await (await fetch("/openapi.json")).json();
   const schemas = contract.components.schemas.Options.properties;
-  const texts = {jpeg_quality: "JPEG quality", lods: "Levels of detail", maps: "Maps to bake"};
   for (const [name, schema] of Object.entries(schemas)) {
-    const label = document.createElement("label");
-    const plain = name.replaceAll("_", " ");
-    label.textContent = texts[name] ?? plain[0].toUpperCase() + plain.slice(1);
-    label.append(fieldFor(name, schema));
-    $(foremost.includes(name) ? "options" : "more-options").append(label);
+    const place = foremost.includes(name) ? "options" : hints[name] ? "written-options" : "more-options";
+    $(place).append(labelled(name, fieldFor(name, schema)));
   }
 }
 
@@ -129,7 +150,7 @@ async function follow(state) {
 const milliseconds = (ms) => ms == null ? "–" : ms < 1000 ? `${ms.toFixed(0)} ms` : `${(ms / 1000).toFixed(2)} s`;
 
 function clear() {
-  for (const id of ["download", "report", "facts", "timings", "maps", "notes"]) $(id).hidden = true;
+  for (const id of ["download", "report", "facts", "levels", "timings", "maps", "notes"]) $(id).hidden = true;
   $("progress").hidden = false;
   for (const figure of job.querySelectorAll("figure")) figure.hidden = true;
   $("errors").replaceChildren();
@@ -138,10 +159,14 @@ function clear() {
   job.hidden = false;
 }
 
+// The options, opened, may have taken the whole window.
+const bringIntoView = () => job.scrollIntoView();
+
 function show(state) {
   const words = {queued: "Waiting", running: "Working", succeeded: "Done", failed: "Failed", canceled: "Canceled", expired: "Expired"};
   $("state").textContent = words[state.state];
-  $("progress").value = state.progress?.percent ?? 0;
+  // What was known from before is done without ever having been under way.
+  $("progress").value = state.state === "succeeded" ? 100 : state.progress?.percent ?? 0;
   if (state.problem) return showProblem(state.problem);
   $("detail").textContent = "";
   if (state.queue_position) $("detail").textContent = `Place ${state.queue_position} in the queue`;
@@ -160,6 +185,7 @@ function showProblem(problem) {
   // One error that says what the detail says adds nothing but its place.
   $("errors").replaceChildren(...(problem.errors ?? []).map(({pointer, detail}) =>
     listItem(pointer, detail === problem.detail ? "" : detail)));
+  bringIntoView();
 }
 
 // A place in the document, where there is one, and what is said of it.
@@ -215,6 +241,15 @@ function fillTable(table, rows) {
   table.hidden = false;
 }
 
+function showLevels({levels, output}) {
+  if (levels.length === 0) return;
+  fillTable($("levels"), [
+    ["full model", output.triangles.toLocaleString(), "–", "–"],
+    ...levels.map(({target, triangles, mean_distance, psnr}) =>
+      [target.replace(":", " "), triangles.toLocaleString(), mean_distance?.toFixed(3) ?? "–", psnr?.toFixed(1) ?? "–"]),
+  ]);
+}
+
 // Keys travel in a header, so files are fetched and shown from memory.
 async function objectUrl(address) {
   return URL.createObjectURL(await (await request(address)).blob());
@@ -235,12 +270,14 @@ async function showResult(state) {
   }
   showMaps(state, report.maps);
   showNotes(report);
+  showLevels(report);
   const {certificate, distortion} = report;
   fillTable($("facts"), [
     ["Components", report.topology.components.toLocaleString()],
+    ["Triangles delivered, cut at the atlas' borders", report.output.triangles.toLocaleString()],
     ["Certificate", certificate.valid ? "valid" : "not valid"],
     ["Folded triangles", certificate.folded.toLocaleString()],
-    ["Degree of the map", certificate.degree.toFixed(9)],
+    ["Degree of the map", Number(certificate.degree.toFixed(6)).toLocaleString()],
     ["Angles: quasi-conformal distortion, mean (1 is best)", distortion.quasi_conformal_mean?.toFixed(3) ?? "–"],
     ["Lengths: symmetric Dirichlet energy (1 is best)", distortion.symmetric_dirichlet?.toFixed(3) ?? "–"],
     ["Atlas", `${report.atlas.pages.map((page) => `${page.width} × ${page.height}`).join(", ")}, ${(100 * report.atlas.utilisation).toFixed(0)} % used`],
@@ -248,12 +285,14 @@ async function showResult(state) {
   // The report's times are of the run that made the result, which a cached job did not have.
   const stages = report.timing.stages.map((s) => [s.name, milliseconds(s.wall_ms), milliseconds(s.cpu_ms)]);
   fillTable($("timings"), [...stages, ["in all", milliseconds(report.timing.wall_ms), milliseconds(report.timing.cpu_ms)]]);
+  bringIntoView();
 }
 
 // ---- What the user does.
 
 function choose(list) {
   files = [...list];
+  $("no-model").hidden = true;
   // The field itself names what was chosen, and is told what was dropped.
   if ($("files").files !== list) $("files").files = list;
 }
@@ -269,11 +308,15 @@ $("drop").addEventListener("drop", (event) => {
 
 form.addEventListener("submit", async (event) => {
   event.preventDefault();
-  if (files.length === 0) return $("files").focus();
+  if (files.length === 0) {
+    $("no-model").hidden = false;
+    return $("files").focus();
+  }
   const submit = form.querySelector("[type=submit]");
   submit.disabled = true;
   clear();
   $("state").textContent = "Sending";
+  bringIntoView();
   try {
     await start();
   } catch (problem) {

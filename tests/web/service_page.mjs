@@ -33,7 +33,11 @@ async function send(page, files, picture) {
     detail: document.querySelector('#detail').textContent,
     failed: document.querySelector('#job').classList.contains('failed'),
     pictures: [...document.querySelectorAll('figure:not([hidden]) img')].map((image) => image.naturalWidth),
-    facts: document.querySelectorAll('#facts tbody tr').length,
+    progress: document.querySelector('#progress').value,
+    facts: Object.fromEntries([...document.querySelectorAll('#facts tbody tr')].map((row) => [...row.cells].map((cell) => cell.textContent))),
+    levels: [...document.querySelectorAll('#levels:not([hidden]) tbody tr')].map((row) => [...row.cells].map((cell) => cell.textContent)),
+    isInView: document.querySelector('#state').getBoundingClientRect().top >= 0 &&
+      document.querySelector('#state').getBoundingClientRect().bottom <= window.innerHeight,
   }))
 }
 
@@ -46,12 +50,21 @@ export async function testPage({orbis, browser, models, refused, scratch, out}, 
   page.on('pageerror', (error) => complaints.push(error.message))
   const crate = ['crate.gltf', 'crate.bin', 'crate colours.png'].map((name) => path.join(models, name))
   await page.goto(service.address)
+  await page.waitForSelector('#options select')
 
+  await test('the page asks for a model where there is none', async () => {
+    await page.click('button[type=submit]')
+    expect(await page.isVisible('#no-model') && !(await page.isVisible('#job')), 'it does not')
+    await page.setInputFiles('#files', crate)
+    expect(!(await page.isVisible('#no-model')), 'it still does when there is one')
+  })
   await test('the page sends a model of several files, shows what came back, and gives it for download', async () => {
     const shown = await send(page, crate, path.join(out, 'page-done.png'))
     expect(shown.state === 'Done', `the page says '${shown.state}: ${shown.detail}'`)
     expect(shown.pictures.length === 2 && shown.pictures.every((width) => width > 0), 'a picture is missing')
-    expect(shown.facts > 3, 'there are no facts')
+    expect(Object.keys(shown.facts).length > 3, 'there are no facts')
+    expect(shown.facts['Degree of the map'] === '1', `the degree is ${shown.facts['Degree of the map']}`)
+    expect(shown.levels.length === 0, 'there are levels of detail that nobody asked for')
     const [download] = await Promise.all([page.waitForEvent('download'), page.click('#download')])
     expect(download.suggestedFilename() === 'crate-orbis.glb', `the file is called ${download.suggestedFilename()}`)
     const file = path.join(scratch, 'downloaded.glb')
@@ -61,11 +74,26 @@ export async function testPage({orbis, browser, models, refused, scratch, out}, 
   await test('the page says that a result was there already', async () => {
     const shown = await send(page, crate, path.join(out, 'page-cached.png'))
     expect(/known from before/.test(shown.detail), `the page says '${shown.detail}'`)
+    expect(shown.progress === 100, `the bar is at ${shown.progress}`)
+  })
+  await test('the page tells the format of what is written by hand', async () => {
+    await page.click('summary')
+    for (const name of ['maps', 'lods', 'remesh', 'morph_to', 'features'])
+      expect((await page.textContent(`#hint-${name}`)).length > 20 && await page.isVisible(`#hint-${name}`), `there is no hint for ${name}`)
+  })
+  await test('the page lists the levels of detail, and brings them into view from below the options', async () => {
+    await page.fill('[name=lods]', '0.5,0.25')
+    const shown = await send(page, crate, path.join(out, 'page-levels.png'))
+    await page.fill('[name=lods]', '')
+    expect(shown.state === 'Done' && shown.isInView, `the page says '${shown.state}: ${shown.detail}', ${shown.isInView ? '' : 'not '}in view`)
+    expect(shown.levels.length === 3 && shown.levels[1][0] === '0.5', `the levels are ${JSON.stringify(shown.levels)}`)
+    expect(shown.levels[1][2] > 0 && shown.levels[1][3] > 0, `the first is ${shown.levels[1]}`)
   })
   await test('the page tells why a model was refused', async () => {
     const shown = await send(page, [refused], path.join(out, 'page-refused.png'))
     expect(shown.failed && shown.detail.length > 20, `the page says '${shown.state}: ${shown.detail}'`)
     expect(shown.pictures.length === 0, 'the pictures of the model before are still there')
+    expect(shown.isInView, 'what it says is out of view')
   })
   await test('the page takes one model at a time, and says which there are', async () => {
     const shown = await send(page, [...crate, refused], path.join(out, 'page-two-models.png'))
