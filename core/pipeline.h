@@ -34,7 +34,7 @@ struct MapFile {
 
 struct Result {
   std::vector<std::byte> glb;                    // with output=zip the archive that holds it
-  std::vector<std::byte> atlas_png, preview_png; // pictures to look at: the first page of the atlas; sphere and model
+  std::vector<std::byte> atlas_png, preview_png; // to look at: base colour of the largest page; sphere and model
   std::vector<MapFile> maps;                     // as report.maps lists them
   Report report;
 };
