@@ -113,25 +113,33 @@ public:
 
   void shade(std::size_t band) {
     const std::span<const std::uint32_t> shown = finder_.band(band);
-    const std::size_t size = picture_.size, width = size * subpixels,
-                      first = band * (Viewfinder::rows / subpixels) * size;
+    const std::size_t size = picture_.size, width = size * subpixels;
     pixels_.clear();
     spots_.clear();
-    for (std::size_t pixel = 0; pixel < shown.size() / samples; ++pixel) {
-      const std::size_t x = pixel % size * subpixels, y = pixel / size * subpixels;
-      const auto triangle = [&](std::size_t i) { return shown[(y + i / subpixels) * width + x + i % subpixels]; };
-      bool is_covered = true;
-      for (std::size_t i = 0; i < samples; ++i) is_covered = is_covered && triangle(i) != none;
-      if (!is_covered) continue;
-      pixels_.push_back(first + pixel);
-      for (std::size_t i = 0; i < samples; ++i)
-        spots_.push_back(finder_.spot(triangle(i), x + i % subpixels, band * Viewfinder::rows + y + i / subpixels));
-    }
+    // Tile by tile: what lies close together in the picture does so in the atlas, and in the cache.
+    for (std::size_t left = 0; left < size; left += tile)
+      for (std::size_t row = 0; row < shown.size() / width / subpixels; ++row)
+        for (std::size_t column = left; column < std::min(left + tile, size); ++column)
+          collect(shown, band, row, column);
     light();
   }
 
 private:
   static constexpr std::size_t samples = std::size_t{subpixels} * subpixels; // a pixel
+  static constexpr std::size_t tile = 8;                                     // pixels
+
+  // The subpixels of a pixel in a band, if all of them show a triangle.
+  void collect(std::span<const std::uint32_t> shown, std::size_t band, std::size_t row, std::size_t column) {
+    const std::size_t size = picture_.size, x = column * subpixels, y = row * subpixels;
+    const auto triangle = [&](std::size_t i) {
+      return shown[(y + i / subpixels) * size * subpixels + x + i % subpixels];
+    };
+    for (std::size_t i = 0; i < samples; ++i)
+      if (triangle(i) == none) return;
+    pixels_.push_back((band * (Viewfinder::rows / subpixels) + row) * size + column);
+    for (std::size_t i = 0; i < samples; ++i)
+      spots_.push_back(finder_.spot(triangle(i), x + i % subpixels, band * Viewfinder::rows + y + i / subpixels));
+  }
 
   void light() {
     normals_.resize(spots_.size());

@@ -46,11 +46,12 @@ Float4 blend(const Corners& corners, const Weights& w) {
          corners[2] * static_cast<float>(w[2]);
 }
 
-// Only the direction of a normal counts; the longest of a triangle's becomes 1, so that products of several fit floats.
+// Only the direction of a normal counts; the largest coordinate of a triangle's becomes 1, so that products of several
+// fit floats.
 Corners scaled(const std::array<Vec3f, 3>& normals) {
-  double longest = 0;
-  for (const Vec3f& n : normals) longest = std::max(longest, norm(Vec3d(n)));
-  const double scale = longest > 0 ? 1 / longest : 0;
+  float largest = 0;
+  for (const Vec3f& n : normals) largest = std::max({largest, std::abs(n.x), std::abs(n.y), std::abs(n.z)});
+  const double scale = largest > 0 ? 1 / double{largest} : 0;
   return {float4(Vec3d(normals[0]) * scale), float4(Vec3d(normals[1]) * scale), float4(Vec3d(normals[2]) * scale)};
 }
 

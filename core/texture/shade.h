@@ -16,7 +16,7 @@ namespace orbis::texture {
 template <class Make>
 void shade(const TexelMap& map, mesh::ThreadPool& pool, const Progress& progress, Make make,
            std::size_t texels_a_look = std::size_t{1} << 21U) {
-  constexpr std::size_t rows_a_block = 8;
+  constexpr std::size_t rows_a_block = 16;
   const std::size_t rows =
       std::max(texels_a_look / std::max(map.width(), 1U) / rows_a_block, std::size_t{1}) * rows_a_block;
   for (std::size_t first = 0; first < map.height(); first += rows) {

@@ -63,6 +63,19 @@ TriangleInPage TexelMap::place(std::uint32_t triangle) const {
   return out;
 }
 
+void TexelMap::find_runs(std::size_t top, std::size_t end, std::vector<Run>& runs) const {
+  runs.clear();
+  for (std::size_t y = top; y < end; ++y) {
+    const std::uint32_t* const row = &triangle_[y * width_];
+    for (std::uint32_t x = 0; x < width_;) {
+      const std::uint32_t first = x, t = row[x];
+      while (x < width_ && row[x] == t) ++x;
+      if (t != nothing) runs.emplace_back(t, static_cast<std::uint32_t>(y - top), first, x - 1);
+    }
+  }
+  std::ranges::sort(runs, {}, &Run::bits);
+}
+
 void TexelMap::cover(mesh::ThreadPool& pool) {
   const auto corners_of = [this](std::uint32_t t) { return corners(t); };
   const Bands bands(mesh_.shown, height_, band_rows, corners_of);

@@ -1,6 +1,7 @@
 // Which point of the surface does each texel of a page show? Answered once, for all the maps that are baked into it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -68,27 +69,46 @@ public:
   [[nodiscard]] TriangleInPage place(std::uint32_t triangle) const;
   [[nodiscard]] std::span<const std::uint32_t> shown() const { return mesh_.shown; }
 
-  // Walks over the texels of rows [begin, end): shader.triangle(t, place) where another triangle begins, then
-  // shader.texel(x, y, weights) for each of its texels.
+  // Walks over the texels of rows [begin, end), some rows at a time, triangle by triangle: shader.triangle(t, place),
+  // then shader.texel(x, y, weights) for its texels there.
   template <class Shader> void walk(std::size_t begin, std::size_t end, Shader& shader) const {
-    TriangleInPage current;
-    std::uint32_t shown = nothing;
-    for (auto y = static_cast<std::uint32_t>(begin); y < end; ++y) {
-      for (std::uint32_t x = 0; x < width_; ++x) {
-        const std::uint32_t t = triangle(x, y);
-        if (t == nothing) continue;
-        if (t != shown) {
-          shown = t;
-          current = place(t);
-          shader.triangle(t, current);
+    std::vector<Run> runs;
+    for (std::size_t top = begin; top < end; top += Run::rows) {
+      find_runs(top, std::min(top + Run::rows, end), runs);
+      std::uint32_t shown = nothing;
+      TriangleInPage place_of_shown;
+      for (const Run& run : runs) {
+        if (run.triangle() != shown) {
+          shown = run.triangle();
+          place_of_shown = place(shown);
+          shader.triangle(shown, place_of_shown);
         }
-        shader.texel(x, y,
-                     covered(x, y) ? current.weights(x + 0.5, y + 0.5) : current.nearest_weights(x + 0.5, y + 0.5));
+        const auto y = static_cast<std::uint32_t>(top) + run.row();
+        for (std::uint32_t x = run.first(); x <= run.last(); ++x) {
+          const double px = x + 0.5, py = y + 0.5;
+          shader.texel(x, y, covered(x, y) ? place_of_shown.weights(px, py) : place_of_shown.nearest_weights(px, py));
+        }
       }
     }
   }
 
 private:
+  // Texels beside each other in a row that show the same triangle, in the bits of one number: sorted, they come
+  // triangle by triangle.
+  struct Run {
+    static constexpr std::size_t rows = 16;
+    std::uint64_t bits;
+
+    Run(std::uint32_t triangle, std::uint32_t row, std::uint32_t first, std::uint32_t last)
+        : bits(std::uint64_t{triangle} << 32U | std::uint64_t{row} << 28U | std::uint64_t{first} << 14U | last) {}
+    [[nodiscard]] std::uint32_t triangle() const { return static_cast<std::uint32_t>(bits >> 32U); }
+    [[nodiscard]] std::uint32_t row() const { return static_cast<std::uint32_t>(bits >> 28U) & 15U; }
+    [[nodiscard]] std::uint32_t first() const { return static_cast<std::uint32_t>(bits >> 14U) & 0x3fffU; }
+    [[nodiscard]] std::uint32_t last() const { return static_cast<std::uint32_t>(bits) & 0x3fffU; }
+  };
+  // Of rows [top, end), sorted.
+  void find_runs(std::size_t top, std::size_t end, std::vector<Run>& runs) const;
+
   [[nodiscard]] std::array<RasterPoint, 3> corners(std::uint32_t triangle) const;
   void cover(mesh::ThreadPool& pool);
   void spread();
