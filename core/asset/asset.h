@@ -144,6 +144,9 @@ struct NewPrimitive {
   // The name of the last target where that is not the input's; all new primitives of a mesh then have it.
   std::string added_target{};
 
+  // The old primitive goes, and nothing takes its place: a level that has no triangle of it. Without `indices`.
+  bool is_gone = false;
+
   // Where some nodes mirror the mesh and others do not: those that do show a copy of it whose TANGENT has its w
   // negated.
   bool mirrors_tangents = false;

@@ -228,6 +228,23 @@ void update_extensions(Json& json, const Json& before, std::span<const NewPrimit
   if (quantised) require(json, quantization_extension);
 }
 
+// A mesh that has nothing left stays in the document, which may name it by its number, but no node shows it.
+void drop_gone(Json& json, const Asset& asset, std::span<const NewPrimitive> primitives) {
+  for (std::size_t i = primitives.size(); i-- > 0;) {
+    if (!primitives[i].is_gone) continue;
+    const std::size_t m = asset.primitives[i].mesh;
+    Json& left = json["meshes"][m]["primitives"];
+    if (left.size() > 1) {
+      left.erase(asset.primitives[i].primitive);
+      continue;
+    }
+    for (Json& node : json["nodes"]) {
+      if (node.value("mesh", json["meshes"].size()) != m) continue;
+      for (const char* member : {"mesh", "skin", "weights"}) node.erase(member);
+    }
+  }
+}
+
 void write_extras(Json& json, std::string_view text) {
   Json facts = Json::parse(text, nullptr, false);
   if (!facts.is_object()) throw Error(ErrorCode::internal, "the facts for asset.extras are not a JSON object");
@@ -288,6 +305,7 @@ Bytes write_asset(const Asset& asset, std::span<const NewPrimitive> primitives, 
   copies.insert(copies.end(), materials.copies().begin(), materials.copies().end());
   note_dropped(drop_dead_channels(out.json, document.json), notes);
   animate_copies(out.json, "materials", copies);
+  drop_gone(out.json, asset, primitives);
   mirrored.split();
   if (!document.keeps_numbers) out.drop_unreferenced();
   update_extensions(out.json, document.json, primitives, images);

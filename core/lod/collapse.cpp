@@ -122,7 +122,7 @@ std::optional<Collapse> Collapser::keep(std::uint32_t kept, std::uint32_t remove
   const auto add = [&](std::uint32_t quadric, std::uint32_t place) {
     sum += mesh_.quadrics[quadric].at(scaled(mesh_.wedges[place].uv));
   };
-  std::array<std::uint32_t, 16> seen{}; // a point where more regions meet is kept exact by those that fit
+  std::array<std::uint32_t, 64> seen; // a point where more regions meet is kept exact by those that fit
   std::size_t count = 0;
   const auto add_all = [&](std::uint32_t point) {
     mesh_.for_each_corner(point, [&](std::uint32_t corner) {
@@ -232,12 +232,32 @@ bool Collapser::keeps_triangles(const Collapse& collapse, const Goal& goal) cons
   return is_sound;
 }
 
+// Whether all wedges of the removed point that stay in the atlas find one of their own primitive at the kept point,
+// whose attributes they can take: else the two sides of a border between primitives would move apart in a morph.
+bool Collapser::finds_attributes(const Collapse& collapse) const {
+  bool all = true;
+  mesh_.for_each_corner(collapse.removed, [&](std::uint32_t corner) {
+    if (corner / 3 == collapse.sides.triangle[0] || corner / 3 == collapse.sides.triangle[1]) return;
+    const std::uint32_t w = mesh_.triangles[corner / 3][corner % 3];
+    for (std::size_t i = 0; i < 2; ++i)
+      if (w == collapse.sides.at_a[i] && w != collapse.into[i]) return;
+    bool found = false;
+    mesh_.for_each_corner(collapse.kept, [&](std::uint32_t other) {
+      const Wedge& kept = mesh_.wedges[mesh_.triangles[other / 3][other % 3]];
+      found = found || full_.primitive_of(kept.region) == full_.primitive_of(mesh_.wedges[w].region);
+    });
+    all = all && found;
+  });
+  return all;
+}
+
 std::optional<Collapser::Goal> Collapser::check(const Collapse& collapse) {
   double drift = 0;
   const bool breaks = collapse.seams == Seams::broken;
   if (mesh_.points[collapse.removed].kind == PointKind::seam && !collapse.sides.is_border() &&
       !keeps_outline(collapse, drift) && !breaks)
     return std::nullopt;
+  if (breaks && !finds_attributes(collapse)) return std::nullopt;
   if (!mesh_.link_condition(collapse.removed, collapse.kept, collapse.sides, breaks)) return std::nullopt;
   std::optional<Goal> goal = goal_of(collapse);
   if (!goal || !keeps_charts(collapse, *goal)) return std::nullopt;

@@ -90,6 +90,7 @@ private:
   [[nodiscard]] bool stays_inside(std::uint32_t wedge, const Vec2f& to) const;
   [[nodiscard]] bool keeps_charts(const Collapse& collapse, const Goal& goal) const;
   [[nodiscard]] bool keeps_triangles(const Collapse& collapse, const Goal& goal) const;
+  [[nodiscard]] bool finds_attributes(const Collapse& collapse) const;
   [[nodiscard]] std::optional<Goal> check(const Collapse& collapse);
   [[nodiscard]] bool add_twins(const Collapse& collapse);
   [[nodiscard]] std::optional<Step> twin_step(std::uint32_t twin, std::uint32_t joint, Seams seams);

@@ -39,6 +39,8 @@ public:
   }
 
   Level next(const Target& target) {
+    if (has_set_aside_) fill_queue();
+    has_set_aside_ = false;
     while (!is_met(target)) {
       if (step(target)) continue;
       if (stopped_by_bound_) break;
@@ -113,8 +115,13 @@ private:
       queue_.pop();
       return true;
     }
+    if (target.deviation > 0 && next.seams == Seams::broken) { // a bound says nothing of the step between the texels
+      queue_.pop();
+      has_set_aside_ = true;
+      return true;
+    }
     const double deviation = squared_deviation(*collapse);
-    stopped_by_bound_ = target.deviation > 0 && deviation * collapse->price() > target.deviation * target.deviation;
+    stopped_by_bound_ = target.deviation > 0 && deviation > target.deviation * target.deviation;
     if (stopped_by_bound_) return false;
     queue_.pop();
     const std::span<const std::uint32_t> kept = collapser_.perform(*collapse);
@@ -184,6 +191,7 @@ private:
   std::uint64_t first_count_ = 0, collapses_ = 0, collapsed_since_filled_ = 0;
   double largest_ = 0;
   bool stopped_by_bound_ = false;
+  bool has_set_aside_ = false; // candidates that another target may take
 };
 
 } // namespace

@@ -43,7 +43,7 @@ WedgeMesh::WedgeMesh(const FullSurface& full, mesh::ThreadPool& threads) {
     const DeviationQuadric q = quadric_of(full, t);
     for (const std::uint32_t w : triangles[t]) quadrics[w] += q;
   }
-  wall_borders();
+  wall_borders(full);
 }
 
 // The copies of a point that one region sees at one place in the atlas are one wedge: levels keep the seams of the
@@ -115,9 +115,10 @@ void WedgeMesh::classify(mesh::ThreadPool& threads) {
   });
 }
 
-// Where the surface ends nothing but its rim says where: planes through its edges, across the surface (Garland and
-// Heckbert 1997, section 6).
-void WedgeMesh::wall_borders() {
+// Where the surface ends, nothing but its rim says where, and nothing but the border between two primitives says where
+// one begins to look like the other: planes through the edges, across the surface (Garland and Heckbert 1997, section
+// 6).
+void WedgeMesh::wall_borders(const FullSurface& full) {
   std::vector<std::uint32_t> ring;
   for (std::uint32_t p = 0; p < points.size(); ++p) {
     if (points[p].kind == PointKind::interior) continue;
@@ -125,19 +126,26 @@ void WedgeMesh::wall_borders() {
     for (const std::uint32_t q : ring) {
       if (q < p) continue;
       const std::optional<EdgeSides> sides = sides_of(p, q);
-      if (!sides || !sides->is_border()) continue;
-      const mesh::Triangle& t = triangles[sides->triangle[0]];
-      const Vec3d a = points[wedges[t[0]].point].position;
-      const Vec3d normal = cross(points[wedges[t[1]].point].position - a, points[wedges[t[2]].point].position - a);
-      const Vec3d edge = points[q].position - points[p].position, across = cross(edge, normal);
-      const double length = norm(across);
-      if (!(length > 0)) continue;
-      const auto wall =
-          DeviationQuadric::of_plane(points[p].position, across * (1 / length), wall_weight * squared_norm(edge));
-      quadrics[sides->at_a[0]] += wall;
-      quadrics[sides->at_b[0]] += wall;
+      if (!sides) continue;
+      const auto primitive = [&](std::size_t i) { return full.primitive_of(wedges[sides->at_a[i]].region); };
+      if (!sides->is_border() && primitive(0) == primitive(1)) continue;
+      for (std::size_t i = 0; i < (sides->is_border() ? 1U : 2U); ++i) wall(*sides, i, p, q);
     }
   }
+}
+
+// On one side of the edge (p, q).
+void WedgeMesh::wall(const EdgeSides& sides, std::size_t side, std::uint32_t p, std::uint32_t q) {
+  const mesh::Triangle& t = triangles[sides.triangle[side]];
+  const Vec3d a = points[wedges[t[0]].point].position;
+  const Vec3d normal = cross(points[wedges[t[1]].point].position - a, points[wedges[t[2]].point].position - a);
+  const Vec3d edge = points[q].position - points[p].position, across = cross(edge, normal);
+  const double length = norm(across);
+  if (!(length > 0)) return;
+  const auto plane =
+      DeviationQuadric::of_plane(points[p].position, across * (1 / length), wall_weight * squared_norm(edge));
+  quadrics[sides.at_a[side]] += plane;
+  quadrics[sides.at_b[side]] += plane;
 }
 
 bool WedgeMesh::is_on_border(std::uint32_t point) const {

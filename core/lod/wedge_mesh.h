@@ -99,7 +99,8 @@ private:
   void make_wedges(const FullSurface& full);
   void list_corners();
   void classify(mesh::ThreadPool& threads);
-  void wall_borders();
+  void wall_borders(const FullSurface& full);
+  void wall(const EdgeSides& sides, std::size_t side, std::uint32_t p, std::uint32_t q);
   [[nodiscard]] bool is_hole_of_three(std::uint32_t a, std::uint32_t b, const EdgeSides& sides) const;
 
   std::vector<std::uint32_t> next_corner_;

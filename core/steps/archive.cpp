@@ -36,6 +36,7 @@ std::vector<asset::NewPrimitive> with_textures_of(const Delivery& full, const De
     const asset::NewPrimitive& shown = full.primitives[p];
     out[p].textures.insert(shown.textures.begin(), shown.textures.end());
     out[p].plain_base_color = shown.plain_base_color;
+    out[p].is_gone = out[p].indices.empty() && !shown.indices.empty();
   }
   return out;
 }
