@@ -184,15 +184,27 @@ const Json* material_of(const Asset& asset, const Primitive& primitive) {
   return primitive.material ? &asset.document->json["materials"][*primitive.material] : nullptr;
 }
 
-std::array<float, 3> base_color_factor(const Asset& asset, const Primitive& primitive) {
-  std::array<float, 3> out{1, 1, 1};
+std::array<float, 4> base_color_factor(const Asset& asset, const Primitive& primitive) {
+  std::array<float, 4> out{1, 1, 1, 1};
   const Json* material = material_of(asset, primitive);
   if (!material) return out;
   const Json* factor = find_path(*material, "extensions", specular_glossiness, "diffuseFactor");
   if (!factor) factor = find_path(*material, "pbrMetallicRoughness", "baseColorFactor");
-  if (!factor || !factor->is_array() || factor->size() < out.size()) return out;
-  for (std::size_t k = 0; k < out.size(); ++k)
+  if (!factor || !factor->is_array()) return out;
+  for (std::size_t k = 0; k < std::min(out.size(), factor->size()); ++k)
     if ((*factor)[k].is_number()) out[k] = std::clamp((*factor)[k].get<float>(), 0.0F, 1.0F);
+  return out;
+}
+
+texture::Alpha alpha_of(const Asset& asset, const Primitive& primitive) {
+  texture::Alpha out;
+  const Json* material = material_of(asset, primitive);
+  const Json* mode = material ? find(*material, "alphaMode") : nullptr;
+  if (!mode || !mode->is_string()) return out;
+  if (*mode == "MASK") out.mode = texture::AlphaMode::mask;
+  if (*mode == "BLEND") out.mode = texture::AlphaMode::blend;
+  if (const Json* cutoff = find(*material, "alphaCutoff"); cutoff && cutoff->is_number())
+    out.cutoff = cutoff->get<float>();
   return out;
 }
 
@@ -200,6 +212,11 @@ bool is_double_sided(const Asset& asset, const Primitive& primitive) {
   const Json* material = material_of(asset, primitive);
   const Json* flag = material ? find(*material, "doubleSided") : nullptr;
   return flag && flag->is_boolean() && flag->get<bool>();
+}
+
+bool shows_back_faces(const Asset& asset, const Primitive& primitive) {
+  const bool tells_sides = asset.format == ModelFormat::glb || asset.format == ModelFormat::gltf;
+  return !tells_sides || is_double_sided(asset, primitive);
 }
 
 std::vector<PartCopy> assign_atlas(Json& document, const std::vector<AtlasUser>& users) {

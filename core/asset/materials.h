@@ -11,6 +11,7 @@
 #include "core/asset/animated_property.h"
 #include "core/asset/asset.h"
 #include "core/asset/json.h"
+#include "core/texture/alpha.h"
 
 namespace orbis::asset {
 
@@ -21,11 +22,18 @@ namespace orbis::asset {
 // The primitive's material, or null where it has none.
 [[nodiscard]] const Json* material_of(const Asset& asset, const Primitive& primitive);
 
-// The base colour factor of a primitive's material, linear RGB; 1 without one.
-[[nodiscard]] std::array<float, 3> base_color_factor(const Asset& asset, const Primitive& primitive);
+// The base colour factor of a primitive's material, linear RGB and alpha; 1 without one.
+[[nodiscard]] std::array<float, 4> base_color_factor(const Asset& asset, const Primitive& primitive);
 
-// Whether its back faces are drawn.
+// What the alpha of its base colour means.
+[[nodiscard]] texture::Alpha alpha_of(const Asset& asset, const Primitive& primitive);
+
+// Whether its back faces are drawn, as glTF says it.
 [[nodiscard]] bool is_double_sided(const Asset& asset, const Primitive& primitive);
+
+// Whether its back faces are a part of what is seen: those of double-sided materials, and all that came in a format
+// other than glTF. These do not tell sides apart, and scans in them are often open.
+[[nodiscard]] bool shows_back_faces(const Asset& asset, const Primitive& primitive);
 
 // What becomes of a material on the atlas.
 struct AtlasLook {

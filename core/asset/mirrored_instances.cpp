@@ -11,11 +11,6 @@
 namespace orbis::asset {
 namespace {
 
-bool mirrors(const Matrix3& m) {
-  const auto& [x, y, z] = m;
-  return dot(Vec3d{x[0], x[1], x[2]}, cross(Vec3d{y[0], y[1], y[2]}, Vec3d{z[0], z[1], z[2]})) < 0;
-}
-
 // Which nodes mirror what they show, as they stand at rest.
 class NodeSides {
 public:

@@ -55,6 +55,11 @@ Matrix3 operator*(const Matrix3& a, const Matrix3& b) {
   return c;
 }
 
+bool mirrors(const Matrix3& m) {
+  const auto& [x, y, z] = m;
+  return dot(Vec3d{x[0], x[1], x[2]}, cross(Vec3d{y[0], y[1], y[2]}, Vec3d{z[0], z[1], z[2]})) < 0;
+}
+
 Vec3d Placement::operator()(const Vec3d& p) const {
   const auto row = [&](std::size_t i) { return linear[i][0] * p.x + linear[i][1] * p.y + linear[i][2] * p.z; };
   return Vec3d{row(0), row(1), row(2)} + offset;

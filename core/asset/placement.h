@@ -10,6 +10,8 @@ namespace orbis::asset {
 
 using Matrix3 = std::array<std::array<double, 3>, 3>; // [row][column]
 [[nodiscard]] Matrix3 operator*(const Matrix3& a, const Matrix3& b);
+// Whether it makes a right hand a left one.
+[[nodiscard]] bool mirrors(const Matrix3& m);
 
 // p -> linear p + offset
 struct Placement {

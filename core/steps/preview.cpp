@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core/asset/image_codec.h"
 #include "core/asset/materials.h"
@@ -33,17 +34,30 @@ Vec3d own_normal(const asset::Asset& asset, const Surface& surface, const textur
   return sum;
 }
 
-// Normals go by the cofactors of a linear map: (A^-1)^T but for a factor, which mirrors as the surface does.
+// Normals go by the cofactors of a linear map, (A^-1)^T but for a factor. It is negative where A mirrors.
 Vec3d turned_normal(const asset::Matrix3& a, const Vec3d& n) {
   const Vec3d x{a[0][0], a[1][0], a[2][0]}, y{a[0][1], a[1][1], a[2][1]}, z{a[0][2], a[1][2], a[2][2]};
-  return cross(y, z) * n.x + cross(z, x) * n.y + cross(x, y) * n.z;
+  const Vec3d turned = cross(y, z) * n.x + cross(z, x) * n.y + cross(x, y) * n.z;
+  return asset::mirrors(a) ? -turned : turned;
+}
+
+// What a primitive of the asset looks like on the atlas. Without NORMAL it is flat to a glTF renderer; a normal map
+// that was baked of it shows the same.
+texture::Material material_of(const asset::Asset& asset, const asset::Primitive& primitive,
+                              const asset::NewPrimitive& delivered) {
+  texture::Material out;
+  if (!delivered.plain_base_color) out.factor = asset::base_color_factor(asset, primitive);
+  out.alpha = asset::alpha_of(asset, primitive);
+  out.is_double_sided = asset::shows_back_faces(asset, primitive);
+  out.is_flat = primitive.find("NORMAL") == nullptr;
+  return out;
 }
 
 // The cut mesh where the scene shows it: each mesh at its first node, then the copies at its other ones.
 class Scene {
 public:
   Scene(const asset::Asset& asset, const Surface& surface, const texture::CutMesh& cut, const Delivery& delivery)
-      : surface_(surface), placements_(asset::placements_of(asset)), mesh_(cut), shape_{mesh_, {}, {}, {}} {
+      : surface_(surface), placements_(asset::placements_of(asset)), mesh_(cut), shape_{mesh_, {}, {}, {}, {}} {
     find_meshes(cut);
     shape_.positions.reserve(cut.vertices.size());
     for (const texture::CutVertex& v : cut.vertices)
@@ -51,12 +65,9 @@ public:
     shape_.normals = texture::smooth_normals(cut, shape_.positions);
     for (std::size_t v = 0; v < cut.vertices.size(); ++v)
       if (const Vec3d n = own_normal(asset, surface, cut.vertices[v]); norm(n) > 0) shape_.normals[v] = normalized(n);
-    for (const std::uint32_t parent : cut.parent) {
-      const std::uint32_t p = surface.primitive_of[parent];
-      shape_.tints.push_back(delivery.primitives[p].plain_base_color
-                                 ? std::array<float, 3>{1, 1, 1}
-                                 : asset::base_color_factor(asset, asset.primitives[p]));
-    }
+    for (std::size_t p = 0; p < asset.primitives.size(); ++p)
+      shape_.materials.push_back(material_of(asset, asset.primitives[p], delivery.primitives[p]));
+    for (const std::uint32_t parent : cut.parent) shape_.material_of.push_back(surface.primitive_of[parent]);
     place();
   }
 
@@ -88,10 +99,12 @@ private:
       drop_beyond_numbers(m, positions);
       all += placements_[m].size() * triangles_of_[m].size();
     }
-    for (std::size_t v = 0; v < positions.size(); ++v) put(v, placements_[mesh_of_vertex_[v]].front());
     copy_of_.resize(positions.size());
     for (std::size_t m = 0; m < placements_.size() && all <= most_triangles; ++m)
       for (std::size_t i = 1; i < placements_[m].size(); ++i) add_copy(m, placements_[m][i], positions, normals);
+    for (std::size_t v = 0; v < positions.size(); ++v) put(v, placements_[mesh_of_vertex_[v]].front());
+    for (std::size_t m = 0; m < placements_.size(); ++m)
+      for (const std::uint32_t t : triangles_of_[m]) turn_as(placements_[m].front(), mesh_.triangles[t]);
   }
 
   // Where all places of a mesh are beyond what numbers hold, it stays where it is.
@@ -103,6 +116,11 @@ private:
       });
     });
     if (placements_[mesh].empty()) placements_[mesh].emplace_back();
+  }
+
+  // Where a mesh is mirrored, its triangles go the other way around.
+  static void turn_as(const Placement& placement, mesh::Triangle& triangle) {
+    if (asset::mirrors(placement.linear)) std::swap(triangle[1], triangle[2]);
   }
 
   void put(std::size_t v, const Placement& placement) {
@@ -127,9 +145,10 @@ private:
         }
         v = copy;
       }
+      turn_as(placement, triangle);
       mesh_.triangles.push_back(triangle);
       mesh_.chart.push_back(mesh_.chart[t]);
-      shape_.tints.push_back(shape_.tints[t]);
+      shape_.material_of.push_back(shape_.material_of[t]);
     }
   }
 };

@@ -1,33 +1,17 @@
 // A small software renderer: triangles with the pages of an atlas, a z-buffer, two lights.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/mesh/thread_pool.h"
-#include "core/texture/atlas.h"
 #include "core/texture/image.h"
+#include "core/texture/projection.h"
 #include "core/texture/sampler.h"
-#include "core/vec3.h"
+#include "core/texture/shape.h"
 
 namespace orbis::texture {
-
-// A cut mesh as it is to be drawn.
-struct Shape {
-  const CutMesh& mesh;
-  std::vector<Vec3d> positions, normals;   // one per vertex
-  std::vector<std::array<float, 3>> tints; // one per triangle: what its texels are multiplied by; empty: 1
-};
-
-// Normals by the areas of the triangles around each point of the surface, the same at every copy of a point.
-[[nodiscard]] std::vector<Vec3d> smooth_normals(const CutMesh& mesh, std::span<const Vec3d> positions);
-
-// Part of a picture, in pixels.
-struct Viewport {
-  std::uint32_t x = 0, y = 0, width = 0, height = 0;
-};
 
 class Canvas {
 public:
@@ -35,7 +19,9 @@ public:
   Canvas(std::uint32_t width, std::uint32_t height, std::span<const Image> pages, mesh::ThreadPool& pool);
 
   // Draws the shape so that it fills the viewport but for a margin. The shape keeps its own depth: viewports must not
-  // overlap. Edges are smoothed by 2 x 2 sub-pixels; each triangle is shaded once a pixel.
+  // overlap. Edges are smoothed by 2 x 2 sub-pixels; each triangle is shaded once a pixel. Alpha is taken as the
+  // materials say, in any order of the triangles: a mask leaves out what is below its cutoff, and what is blended lies
+  // over what is behind it, the nearest eight layers of it at each sub-pixel.
   void draw(const Shape& shape, const Viewport& viewport);
   // RGB.
   [[nodiscard]] Image picture() const;
@@ -48,8 +34,5 @@ private:
 
   void paint_background();
 };
-
-// Width / height of a shape as draw() shows it.
-[[nodiscard]] double aspect_of(const Shape& shape);
 
 } // namespace orbis::texture

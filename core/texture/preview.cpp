@@ -18,24 +18,31 @@ std::uint32_t component_with_most_texels(const CutMesh& mesh) {
   return static_cast<std::uint32_t>(std::max_element(texels.begin(), texels.end()) - texels.begin());
 }
 
-// One component's triangles on its sphere, split until they look round.
+// One component's triangles on its sphere, split until they look round. Both sides are drawn: through the holes of an
+// open component its sphere is seen from within.
 class RoundMesh {
 public:
-  RoundMesh(const CutMesh& mesh, std::uint32_t component, std::span<const std::array<float, 3>> tints) {
+  // model: gives the materials; null: the texels are shown as they are.
+  RoundMesh(const CutMesh& mesh, std::uint32_t component, const Shape* model) {
     mesh_.charts = mesh.charts;
     mesh_.pages = mesh.pages;
     mesh_.points = mesh.points;
     mesh_.vertices = mesh.vertices;
     for (const CutVertex& v : mesh.vertices) points_.push_back(normalized(Vec3d(sphere::from_grid(v.sphere))));
+    if (model != nullptr) materials_ = model->materials;
+    for (Material& material : materials_) {
+      material.is_double_sided = true;
+      material.is_flat = false;
+    }
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       if (mesh.charts[mesh.chart[t]].component == component) {
         split(mesh.triangles[t], mesh.chart[t]);
-        if (!tints.empty()) tints_.resize(mesh_.triangles.size(), tints[t]);
+        if (!materials_.empty()) material_of_.resize(mesh_.triangles.size(), model->material_of[t]);
       }
   }
 
   [[nodiscard]] Shape shape(const Rotation& rotation) const {
-    Shape out{mesh_, {}, {}, tints_};
+    Shape out{mesh_, {}, {}, materials_, material_of_};
     for (const Vec3d& p : points_) out.positions.push_back(rotation(p));
     out.normals = out.positions;
     return out;
@@ -44,7 +51,8 @@ public:
 private:
   CutMesh mesh_;
   std::vector<Vec3d> points_;
-  std::vector<std::array<float, 3>> tints_;
+  std::vector<Material> materials_;
+  std::vector<std::uint32_t> material_of_;
 
   // The longest edge is halved while it is too long. Whether an edge is does not depend on the triangle, so neighbours
   // agree.
@@ -113,7 +121,7 @@ Shape shape_of(const mesh::TriangleMesh& surface, const CutMesh& mesh) {
   positions.reserve(mesh.vertices.size());
   for (const CutVertex& v : mesh.vertices) positions.push_back(interpolated(surface.positions, surface.triangles, v));
   std::vector<Vec3d> normals = smooth_normals(mesh, positions);
-  return {mesh, std::move(positions), std::move(normals), {}};
+  return {mesh, std::move(positions), std::move(normals), {}, {}};
 }
 
 Image draw_model(const mesh::TriangleMesh& surface, const CutMesh& mesh, std::span<const Image> pages,
@@ -126,7 +134,7 @@ Image draw_model(const mesh::TriangleMesh& surface, const CutMesh& mesh, std::sp
 Image draw_sphere(const CutMesh& mesh, std::span<const Image> pages, std::uint32_t width, std::uint32_t height,
                   mesh::ThreadPool& pool) {
   Canvas canvas(width, height, pages, pool);
-  const RoundMesh round(mesh, component_with_most_texels(mesh), {});
+  const RoundMesh round(mesh, component_with_most_texels(mesh), nullptr);
   canvas.draw(round.shape(Rotation{}), {0, 0, width, height});
   return canvas.picture();
 }
@@ -135,9 +143,9 @@ Image draw_side_by_side(const CutMesh& mesh, const Shape& model, std::span<const
                         std::uint32_t height, mesh::ThreadPool& pool) {
   Canvas canvas(width, height, pages, pool);
   const std::uint32_t component = component_with_most_texels(mesh);
-  const RoundMesh round(mesh, component, model.tints);
+  const RoundMesh round(mesh, component, &model);
   // The model gets the width that it needs at full height, the sphere a square, and what is left over goes around them.
-  const double wanted = std::clamp(aspect_of(model), 0.6, 2.0);
+  const double wanted = std::clamp(aspect_of(model.positions), 0.6, 2.0);
   const double side = std::min<double>(height, width / (1 + wanted));
   const auto left = static_cast<std::uint32_t>(side), right = static_cast<std::uint32_t>(wanted * side);
   const std::uint32_t gap = (width - left - right) / 3;

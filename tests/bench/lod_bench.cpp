@@ -31,8 +31,8 @@
 #include "core/lod/simplify.h"
 #include "core/sphere/embedding.h"
 #include "core/sphere/snap.h"
-#include "core/texture/canvas.h"
 #include "core/texture/sampler.h"
+#include "core/texture/shape.h"
 
 using namespace orbis;
 

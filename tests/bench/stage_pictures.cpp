@@ -58,7 +58,7 @@ public:
   }
 
   [[nodiscard]] texture::Shape shape(std::span<const Vec3d> at) const {
-    texture::Shape out{mesh_, {}, {}, {}};
+    texture::Shape out{mesh_, {}, {}, {}, {}};
     for (const mesh::Triangle& t : level_.triangles) {
       const Vec3d n = cross(at[t[1]] - at[t[0]], at[t[2]] - at[t[0]]);
       const double length = norm(n);

@@ -7,7 +7,7 @@
 #include "core/lod/bumpy_worlds.h"
 #include "core/lod/normal_map.h"
 #include "core/lod/simplify.h"
-#include "core/texture/canvas.h"
+#include "core/texture/shape.h"
 
 using namespace orbis;
 
