@@ -216,11 +216,11 @@ void GeometryMaps::bake_ambient_occlusion() {
   const std::uint32_t step = std::min(wanted, std::max(job_.cut.gutter, 1U));
   const texture::TexelMap map(page_.mesh(), std::max(whole.width() / step, 1U), std::max(whole.height() / step, 1U),
                               page_.pool());
-  if (!trees_) trees_ = occlusion_trees(job_.surface, job_.cut);
+  if (!trees_) trees_ = occlusion_trees(job_.asset, job_.surface, job_.cut, job_.limits, job_.report);
   if (!two_sided_) two_sided_ = two_sided_triangles();
   const Image image = texture::bake_occlusion(map, page_.values().positions(), page_.values().normals(),
-                                              {trees_->trees, trees_->tree_of}, *two_sided_, trees_->offset,
-                                              job_.progress, page_.pool());
+                                              {trees_->trees, trees_->tree_of, trees_->component_of}, *two_sided_,
+                                              trees_->offset, job_.progress, page_.pool());
   const std::uint32_t number = page_.add(image, MapKind::data, "ambient_occlusion");
   for (std::size_t p = 0; p < job_.asset.primitives.size(); ++p) {
     if (!page_.shows(p) || asset::names_texture(job_.asset, job_.asset.primitives[p], TextureSlot::occlusion)) continue;

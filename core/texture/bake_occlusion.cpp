@@ -68,7 +68,8 @@ private:
     const Vec3f origin = at + flat * offset_;
     const Vec3f u = unit(std::abs(normal.x) < 0.6F ? cross(normal, {1, 0, 0}) : cross(normal, {0, 1, 0}));
     const Vec3f v = cross(normal, u);
-    const RayTree& tree = occluders_.trees[occluders_.tree_of[triangle_]];
+    const OccluderTree& tree = occluders_.trees[occluders_.tree_of[triangle_]];
+    const std::uint32_t component = occluders_.component_of[triangle_];
     const auto [turn, shift] = turn_of(texel);
     std::uint32_t cast = 0, hidden = 0;
     for (const auto& [s, t] : samples_) {
@@ -77,7 +78,7 @@ private:
       const Vec3f direction = u * (r * std::cos(angle)) + v * (r * std::sin(angle)) + normal * up;
       if (dot(direction, flat) <= 0) continue;
       ++cast;
-      if (tree.meets(origin, direction)) ++hidden;
+      if (tree.hides(origin, direction, component)) ++hidden;
     }
     return cast > 0 ? 1 - static_cast<float>(hidden) / static_cast<float>(cast) : 1;
   }

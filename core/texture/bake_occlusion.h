@@ -9,7 +9,7 @@
 #include "core/mesh/thread_pool.h"
 #include "core/progress.h"
 #include "core/texture/image.h"
-#include "core/texture/ray_tree.h"
+#include "core/texture/occluders.h"
 #include "core/texture/texel_map.h"
 #include "core/vec3.h"
 
@@ -19,8 +19,8 @@ inline constexpr std::uint32_t rays_a_texel = 64;
 
 // What hides the sky, by number: surfaces in spaces of their own do not hide each other.
 struct Occluders {
-  std::span<const RayTree> trees;
-  std::span<const std::uint32_t> tree_of; // by triangle of the page's mesh
+  std::span<const OccluderTree> trees;
+  std::span<const std::uint32_t> tree_of, component_of; // by triangle of the page's mesh
 };
 
 // The visible part of the sky above each texel's point, weighted by the cosine to its normal (what glTF's occlusion

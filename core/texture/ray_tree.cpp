@@ -184,8 +184,13 @@ private:
 };
 
 RayTree::RayTree(std::span<const Vec3f> positions, std::span<const mesh::Triangle> triangles) {
+  if (triangles.empty()) {
+    nodes_.emplace_back();
+    return;
+  }
   Builder builder(positions, triangles);
   nodes_ = builder.take();
+  numbers_.assign(builder.order().begin(), builder.order().end());
   triangles_.reserve(triangles.size());
   for (const std::uint32_t t : builder.order()) {
     const Vec3f &a = positions[triangles[t][0]], &b = positions[triangles[t][1]], &c = positions[triangles[t][2]];
@@ -193,8 +198,10 @@ RayTree::RayTree(std::span<const Vec3f> positions, std::span<const mesh::Triangl
   }
 }
 
-// Moeller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection (1997).
-bool RayTree::meets(const Flat& t, const Vec3f& origin, const Vec3f& direction) {
+// Moeller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection (1997). The determinant is -direction . normal.
+// is_stopped(u, v, from_behind)
+template <class IsStopped>
+bool RayTree::meets(const Flat& t, const Vec3f& origin, const Vec3f& direction, IsStopped is_stopped) {
   const Vec3f p = cross(direction, t.edge_2);
   const float determinant = dot(t.edge_1, p);
   if (determinant == 0) return false;
@@ -204,10 +211,23 @@ bool RayTree::meets(const Flat& t, const Vec3f& origin, const Vec3f& direction) 
   if (u < 0 || u > 1) return false;
   const Vec3f q = cross(from, t.edge_1);
   const float v = dot(direction, q) * inverse;
-  return v >= 0 && u + v <= 1 && dot(t.edge_2, q) * inverse > 0;
+  return v >= 0 && u + v <= 1 && dot(t.edge_2, q) * inverse > 0 && is_stopped(u, v, determinant < 0);
 }
 
 bool RayTree::meets(const Vec3f& origin, const Vec3f& direction) const {
+  return meets_one(origin, direction, [](std::uint32_t, float, float, bool) { return true; });
+}
+
+bool RayTree::meets(const Vec3f& origin, const Vec3f& direction,
+                    const std::function<bool(const RayHit&)>& is_stopped) const {
+  return meets_one(origin, direction, [&](std::uint32_t i, float u, float v, bool from_behind) {
+    return is_stopped({numbers_[i], u, v, from_behind});
+  });
+}
+
+// is_stopped(place of the triangle, u, v, from_behind)
+template <class IsStopped>
+bool RayTree::meets_one(const Vec3f& origin, const Vec3f& direction, IsStopped is_stopped) const {
   const Vec3f inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
   std::array<std::uint32_t, most_waiting> waiting; // NOLINT: filled before it is read
   std::size_t count = 0;
@@ -229,7 +249,8 @@ bool RayTree::meets(const Vec3f& origin, const Vec3f& direction) const {
       if (is_met[k] == 0) continue;
       if (node.count[k] == 0 && node.first[k] != 0) waiting[count++] = node.first[k];
       for (std::uint32_t i = node.first[k]; i < node.first[k] + node.count[k]; ++i) {
-        if (meets(triangles_[i], origin, direction)) return true;
+        const auto here = [&](float u, float v, bool from_behind) { return is_stopped(i, u, v, from_behind); };
+        if (meets(triangles_[i], origin, direction, here)) return true;
       }
     }
   }

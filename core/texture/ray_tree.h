@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -11,16 +12,25 @@
 
 namespace orbis::texture {
 
+// Where a ray meets a triangle.
+struct RayHit {
+  std::uint32_t triangle = 0;
+  float u = 0, v = 0; // weights of its second and third corner
+  bool from_behind = false;
+};
+
 class RayTree {
 public:
   // Splits where the surface area heuristic finds it cheapest (MacDonald and Booth 1990; in bins, Wald 2007), then
-  // takes binary nodes together by fours, whose boxes are tested side by side. O(n log n), deterministic. triangles: at
-  // least one.
+  // takes binary nodes together by fours, whose boxes are tested side by side. O(n log n), deterministic.
   RayTree(std::span<const Vec3f> positions, std::span<const mesh::Triangle> triangles);
 
   // Whether a triangle is met by origin + s direction for some s > 0, from either side. A ray within a triangle's plane
   // does not meet it.
   [[nodiscard]] bool meets(const Vec3f& origin, const Vec3f& direction) const;
+  // The same, where some triangles let rays through. They are asked in no order.
+  [[nodiscard]] bool meets(const Vec3f& origin, const Vec3f& direction,
+                           const std::function<bool(const RayHit&)>& is_stopped) const;
 
 private:
   class Builder;
@@ -37,10 +47,14 @@ private:
     Vec3f corner, edge_1, edge_2;
   };
 
-  [[nodiscard]] static bool meets(const Flat& t, const Vec3f& origin, const Vec3f& direction);
+  template <class IsStopped>
+  [[nodiscard]] static bool meets(const Flat& t, const Vec3f& origin, const Vec3f& direction, IsStopped is_stopped);
+  template <class IsStopped>
+  [[nodiscard]] bool meets_one(const Vec3f& origin, const Vec3f& direction, IsStopped is_stopped) const;
 
   std::vector<Node> nodes_;
-  std::vector<Flat> triangles_; // in the order of the leaves
+  std::vector<Flat> triangles_;        // in the order of the leaves
+  std::vector<std::uint32_t> numbers_; // what they are called
 };
 
 } // namespace orbis::texture

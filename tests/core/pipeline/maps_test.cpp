@@ -328,6 +328,49 @@ TEST_CASE("both sides of a seam see the same occlusion, as far as its rays tell"
   std::sort(differences.begin(), differences.end());
 }
 
+namespace {
+
+// A square from -1 to 1 at height z that faces +Z, in a material and with vertex colours of its own.
+void add_square(GltfBuilder& b, float z, bool faces_up, const Json& material, float alpha) {
+  const auto position = b.add_accessor(std::vector<float>{-1, -1, z, 1, -1, z, 1, 1, z, -1, 1, z}, "VEC3", 3);
+  b.json["accessors"][position]["min"] = {-1, -1, z};
+  b.json["accessors"][position]["max"] = {1, 1, z};
+  std::vector<float> colors;
+  for (int i = 0; i < 4; ++i) colors.insert(colors.end(), {0.5F, 0.5F, 0.5F, alpha});
+  const std::vector<std::uint16_t> up{0, 1, 2, 0, 2, 3}, down{0, 2, 1, 0, 3, 2};
+  const auto color = b.add_accessor(colors, "VEC4", 4), indices = b.add_accessor(faces_up ? up : down, "SCALAR", 1);
+  Json primitive{{"attributes", {{"POSITION", position}, {"COLOR_0", color}}},
+                 {"indices", indices},
+                 {"material", b.append("materials", material)}};
+  if (b.json.contains("meshes"))
+    b.json["meshes"][0]["primitives"].push_back(primitive);
+  else
+    b.add_mesh(primitive);
+}
+
+// The occlusion in the middle of a floor under a roof close to it.
+int light_under(const Json& roof, bool faces_up, float alpha) {
+  GltfBuilder b;
+  add_square(b, 0, true, Json::object(), 1);
+  add_square(b, 0.1F, faces_up, roof, alpha);
+  const Result result = run(b, {{"maps", "auto,ambient_occlusion"}, {"texture_size", "128"}});
+  const texture::Image map = map_of(result, "ambient_occlusion-1.png");
+  return map.at(map.width / 2, map.height / 2)[0];
+}
+
+} // namespace
+
+// Leaf cards had been shaded by the whole of their squares, and what lies under a surface that is not drawn from below.
+TEST_CASE("what is not drawn hides no sky: backs of single sides, what masks leave out, what is blended") {
+  const Json masked{{"alphaMode", "MASK"}, {"doubleSided", true}};
+  CHECK(light_under({{"doubleSided", true}}, true, 0) < 60);
+  CHECK(light_under(masked, true, 0.6F) < 60);
+  CHECK(light_under(masked, true, 0.4F) == 255);
+  CHECK(light_under({{"alphaMode", "BLEND"}, {"doubleSided", true}}, true, 0.9F) == 255);
+  CHECK(light_under(Json::object(), false, 1) < 60);
+  CHECK(light_under(Json::object(), true, 1) == 255);
+}
+
 TEST_CASE("every level has a displacement map, and the coarser one has more to displace") {
   const GltfBuilder b = painted_sphere();
   const Result result = run(b, {{"maps", "displacement"}, {"lods", "0.25,0.02"}});

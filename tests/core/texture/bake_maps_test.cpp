@@ -249,12 +249,12 @@ TEST_CASE("a normal map gives back the full surface's normals, on its own frames
   std::vector<Vec3f> rough;
   for (std::uint32_t v = 0; v < fine.uv.size(); ++v) {
     const auto shake = [&] { return 0.4 * (static_cast<double>(random() % 1000) / 1000 - 0.5); };
-    rough.push_back(Vec3f(normalized(Vec3d(fine.normal(v)) + Vec3d{shake(), shake(), shake()})));
+    rough.emplace_back(normalized(Vec3d(fine.normal(v)) + Vec3d{shake(), shake(), shake()}));
   }
   const auto normals = fine.corners<Vec3f>([&](std::uint32_t v) { return rough[v]; });
   const std::vector<std::uint32_t> source_of(fine.triangles.size(), 0);
   const NormalSource source{normals, {}, nullptr, {}, source_of};
-  const Image16 in_space = bake_normals<Image16>(map, source, nullptr, NoProgress(), pool);
+  const auto in_space = bake_normals<Image16>(map, source, nullptr, NoProgress(), pool);
 
   for (const bool own : {true, false}) {
     CAPTURE(own);
@@ -263,13 +263,13 @@ TEST_CASE("a normal map gives back the full surface's normals, on its own frames
     std::vector<Tangent> frame_tangents;
     for (std::uint32_t v = 0; v < sheet.uv.size(); ++v) {
       const Vec3d n(own ? rough[v] : sheet.normal(v)), t = normalized(cross(Vec3d{0, 1, 0}, n));
-      frame_normals.push_back(Vec3f(n));
+      frame_normals.emplace_back(n);
       frame_tangents.push_back(
           {static_cast<float>(t.x), static_cast<float>(t.y), static_cast<float>(t.z), own ? -1.0F : 1.0F});
     }
     const TexelMap& frames_map = own ? map : coarse_map;
     const FrameField frames{&frames_map, sheet.triangles, frame_normals, frame_tangents};
-    const Image16 tangent_space = bake_normals<Image16>(map, source, &frames, NoProgress(), pool);
+    const auto tangent_space = bake_normals<Image16>(map, source, &frames, NoProgress(), pool);
     double worst = 0;
     for (std::uint32_t y = 20; y < 108; ++y)
       for (std::uint32_t x = 20; x < 108; ++x) {
@@ -315,8 +315,7 @@ TEST_CASE("the input's own normal map is turned with its tangents, and scaled") 
 
 TEST_CASE("rays meet what stands in their way, from either side, and nothing else") {
   const std::vector<Vec3f> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 5}, {1, 0, 5}, {0, 1, 5}};
-  std::vector<Triangle> triangles;
-  for (int i = 0; i < 20; ++i) triangles.push_back({0, 1, 2}); // one over the other: no way to split them
+  std::vector<Triangle> triangles(20, Triangle{0, 1, 2}); // one over the other: no way to split them
   triangles.push_back({3, 4, 5});
   const RayTree tree(positions, triangles);
   CHECK(tree.meets({0.2F, 0.2F, 1}, {0, 0, -1}));
@@ -325,6 +324,32 @@ TEST_CASE("rays meet what stands in their way, from either side, and nothing els
   CHECK_FALSE(tree.meets({0.2F, 0.2F, -1}, {0, 0, -1})); // behind
   CHECK_FALSE(tree.meets({0.8F, 0.8F, 1}, {0, 0, -1}));  // beside
   CHECK_FALSE(tree.meets({2, 2, 1}, {1, 1, 0.01F}));
+}
+
+TEST_CASE("rays go through the backs of single sides, but for those of their own component, and through what masks "
+          "leave out") {
+  const std::vector<Vec3f> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}; // seen from +z
+  const std::vector<Triangle> triangles{{0, 1, 2}};
+  const Vec3f up{0, 0, 1}, down{0, 0, -1}, above{0.2F, 0.2F, 1}, below{0.2F, 0.2F, -1};
+  const OccluderTree one_sided(positions, triangles, {{7, false, Occluder::none}});
+  CHECK(one_sided.hides(above, down, 0));
+  CHECK_FALSE(one_sided.hides(below, up, 0));
+  CHECK(one_sided.hides(below, up, 7));
+
+  Image left_half{2, 1, 4, {0, 0, 0, 255, 0, 0, 0, 100}};
+  const Sampler sampler(left_half, Wrap::repeat, Wrap::repeat, 1);
+  AlphaMask mask{&sampler, {RasterPoint{0, 0}, {2, 0}, {0, 1}}, {1, 1, 1}, 0.5F};
+  const auto hides = [&](float x) {
+    const OccluderTree tree(positions, triangles, {{7, true, 0}}, {mask});
+    return tree.hides({x, 0.2F, 1}, down, 0) && tree.hides({x, 0.2F, -1}, up, 0);
+  };
+  CHECK(hides(0.4F));
+  CHECK_FALSE(hides(0.6F));
+  mask.cutoff = 0.3F;
+  CHECK(hides(0.6F));
+  mask.alpha = {0.5F, 0.5F, 0.5F};
+  CHECK_FALSE(hides(0.6F));
+  CHECK_FALSE(OccluderTree({}, {}).hides(above, down, 0)); // nothing
 }
 
 TEST_CASE("a plain sees the whole sky, and half of it at the foot of a high wall") {
@@ -336,10 +361,11 @@ TEST_CASE("a plain sees the whole sky, and half of it at the foot of a high wall
   const std::vector<Vec3f> wall{{0.1F, -1e4F, -1e4F}, {0.1F, 1e4F, -1e4F}, {0.1F, 0, 1e4F}};
   const std::vector<Vec3f> ground{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const std::vector<Triangle> triangle{{0, 1, 2}};
-  const std::vector<RayTree> trees{RayTree(ground, triangle), RayTree(wall, triangle)};
+  const std::vector<OccluderTree> trees{OccluderTree(ground, triangle), OccluderTree(wall, triangle)};
   for (const std::uint32_t which : {0U, 1U}) {
     const std::vector<std::uint32_t> tree_of(sheet.triangles.size(), which);
-    const Image image = bake_occlusion(map, positions, normals, {trees, tree_of}, {}, 1e-4F, NoProgress(), pool);
+    const Image image =
+        bake_occlusion(map, positions, normals, {trees, tree_of, tree_of}, {}, 1e-4F, NoProgress(), pool);
     for (std::uint32_t y = 0; y < 32; ++y)
       for (std::uint32_t x = 0; x < 32; ++x)
         CHECK(std::abs(image.at(x, y)[0] - (which == 0 ? 255 : 128)) <= (which == 0 ? 0 : 20));
@@ -354,10 +380,10 @@ TEST_CASE("a sheet that is seen from both sides has the occlusion of its open si
   const TexelMap map(sheet.page(), 16, 16, pool);
   // A wide floor close to its front.
   const std::vector<Vec3f> floor{{-1e4F, -1e4F, -0.01F}, {2e4F, -1e4F, -0.01F}, {0, 2e4F, -0.01F}};
-  const std::vector<RayTree> trees{RayTree(floor, std::vector<Triangle>{{0, 1, 2}})};
+  const std::vector<OccluderTree> trees{OccluderTree(floor, std::vector<Triangle>{{0, 1, 2}})};
   const std::vector<std::uint32_t> tree_of(sheet.triangles.size(), 0);
   for (const bool two_sided : {false, true}) {
-    const Image image = bake_occlusion(map, positions, normals, {trees, tree_of},
+    const Image image = bake_occlusion(map, positions, normals, {trees, tree_of, tree_of},
                                        std::vector<bool>(sheet.triangles.size(), two_sided), 1e-4F, NoProgress(), pool);
     CHECK(image.at(8, 8)[0] == (two_sided ? 255 : 0));
   }
