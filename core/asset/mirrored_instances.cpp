@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "core/asset/accessor_reader.h"
 #include "core/asset/extensions.h"
+#include "core/asset/instances.h"
 #include "core/asset/nodes.h"
 
 namespace orbis::asset {
@@ -67,38 +67,26 @@ private:
 // What EXT_mesh_gpu_instancing makes of left and right.
 enum class Instances { straight, mirrored, mixed };
 
-class InstanceReader {
-public:
-  explicit InstanceReader(const Document& document) : document_(document) {}
-
-  Instances operator()(const Json& node) {
-    const Json* scale = find_path(node, "extensions", "EXT_mesh_gpu_instancing", "attributes", "SCALE");
-    if (!scale) return Instances::straight;
-    if (!model_) model_.emplace(typed_model(document_.json));
-    const Attribute scales = AccessorReader(document_, *model_).attribute(scale->get<std::size_t>(), "SCALE");
-    std::size_t mirrored = 0;
-    for (std::size_t i = 0; scales.components == 3 && i < scales.count(); ++i) {
-      const Vec3d s = vector_at(scales, i);
-      if (s.x * s.y * s.z < 0) ++mirrored;
-    }
-    return mirrored == 0 ? Instances::straight : mirrored == scales.count() ? Instances::mirrored : Instances::mixed;
+Instances sides_of(const std::optional<Attribute>& scales) {
+  if (!scales) return Instances::straight;
+  std::size_t mirrored = 0;
+  for (std::size_t i = 0; i < scales->count(); ++i) {
+    const Vec3d s = vector_at(*scales, i);
+    if (s.x * s.y * s.z < 0) ++mirrored;
   }
-
-private:
-  const Document& document_;
-  std::optional<tinygltf::Model> model_; // made when needed
-};
+  return mirrored == 0 ? Instances::straight : mirrored == scales->count() ? Instances::mirrored : Instances::mixed;
+}
 
 // Calls visit(node, mesh, whether it is mirrored, whether its instances are mixed) for every node that shows a mesh.
 // json: the asset's document, or what became of it.
 template <class Visit> void for_meshes(const Json& json, const Asset& asset, Visit visit) {
   const NodeSides sides(json);
-  InstanceReader instances_of(*asset.document);
+  InstanceReader instances_of_nodes(*asset.document);
   for (std::size_t n = 0; n < array_size(json, "nodes"); ++n) {
     const Json& node = json["nodes"][n];
     const Json* mesh = find(node, "mesh");
     if (!mesh) continue;
-    const Instances instances = instances_of(node);
+    const Instances instances = sides_of(instances_of_nodes.attribute(node, "SCALE"));
     const bool is_mixed = instances == Instances::mixed;
     const bool is_mirrored = !is_mixed && !find(node, "skin") && sides[n] != (instances == Instances::mirrored);
     visit(n, mesh->get<std::size_t>(), is_mirrored, is_mixed);

@@ -1,10 +1,12 @@
 #include "core/asset/placement.h"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "core/asset/document.h"
+#include "core/asset/instances.h"
 #include "core/asset/nodes.h"
 
 namespace orbis::asset {
@@ -22,6 +24,9 @@ std::optional<std::array<double, N>> numbers(const JsonReader& reader, const Jso
   }
   return values;
 }
+
+// As many are more than a picture can tell apart, and a few bytes of a file may ask for billions.
+constexpr std::size_t most_instances = std::size_t{1} << 18U;
 
 std::vector<std::size_t> root_nodes(const Json& document) {
   std::vector<std::size_t> out;
@@ -67,6 +72,14 @@ Vec3d Placement::operator()(const Vec3d& p) const {
 
 Placement Placement::after(const Placement& inner) const { return {linear * inner.linear, (*this)(inner.offset)}; }
 
+Placement placed(const Vec3d& translation, const std::array<double, 4>& rotation, const Vec3d& scale) {
+  const auto [x, y, z, w] = rotation;
+  const Matrix3 turned{{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+                        {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+                        {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}}};
+  return {turned * Matrix3{{{scale.x, 0, 0}, {0, scale.y, 0}, {0, 0, scale.z}}}, translation};
+}
+
 Placement local_placement(const JsonReader& reader, const Json& node) {
   if (const auto m = numbers<16>(reader, node, "matrix")) {
     const auto& a = *m; // column by column
@@ -75,17 +88,15 @@ Placement local_placement(const JsonReader& reader, const Json& node) {
   const auto t = numbers<3>(reader, node, "translation").value_or(std::array<double, 3>{0, 0, 0});
   const auto s = numbers<3>(reader, node, "scale").value_or(std::array<double, 3>{1, 1, 1});
   const auto q = numbers<4>(reader, node, "rotation").value_or(std::array<double, 4>{0, 0, 0, 1});
-  const auto [x, y, z, w] = q;
-  const Matrix3 rotation{{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
-                          {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
-                          {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}}};
-  return {rotation * Matrix3{{{s[0], 0, 0}, {0, s[1], 0}, {0, 0, s[2]}}}, {t[0], t[1], t[2]}};
+  return placed({t[0], t[1], t[2]}, q, {s[0], s[1], s[2]});
 }
 
 std::vector<std::vector<Placement>> placements_of(const Asset& asset) {
   const Json& document = asset.document->json;
   const JsonReader reader(document);
   std::vector<std::vector<Placement>> out(array_size(document, "meshes"));
+  InstanceReader instances(*asset.document);
+  std::size_t left = most_instances;
   std::vector<std::pair<std::size_t, Placement>> waiting; // node, and where its parent is
   const auto add = [&](const std::vector<std::size_t>& nodes, const Placement& parent) {
     for (auto n = nodes.rbegin(); n != nodes.rend(); ++n) waiting.emplace_back(*n, parent);
@@ -97,7 +108,11 @@ std::vector<std::vector<Placement>> placements_of(const Asset& asset) {
     const Json& node = document["nodes"][n];
     const Placement here = parent.after(local_placement(reader, node));
     const auto mesh = reader.integer(node, "mesh");
-    if (mesh && !find(node, "skin")) out[*mesh].push_back(here);
+    if (mesh && !find(node, "skin")) {
+      const std::vector<Placement> of_node = left > 0 ? instances.placements(node, left) : std::vector<Placement>(1);
+      for (const Placement& instance : of_node) out[*mesh].push_back(here.after(instance));
+      left -= std::min(left, of_node.size());
+    }
     if (const Json* children = find(node, "children")) add(children->get<std::vector<std::size_t>>(), here);
   }
   for (std::vector<Placement>& of_mesh : out) {

@@ -23,9 +23,12 @@ struct Placement {
   [[nodiscard]] Placement after(const Placement& inner) const;
 };
 
+// What is scaled first, then turned by a unit quaternion (x, y, z, w), then moved.
+[[nodiscard]] Placement placed(const Vec3d& translation, const std::array<double, 4>& rotation, const Vec3d& scale);
+
 // Where the default scene shows each mesh of the document (without scenes: the nodes that have no parent), in the order
-// of its nodes; each node counts once, whatever EXT_mesh_gpu_instancing makes of it. A mesh that it does not show, or
-// that joints place, stays where it is. One or more for each mesh.
+// of its nodes, at each instance of a node (EXT_mesh_gpu_instancing): the first 2^18 in all, then each node once. A
+// mesh that it does not show, or that joints place, stays where it is. One or more for each mesh.
 [[nodiscard]] std::vector<std::vector<Placement>> placements_of(const Asset& asset);
 
 } // namespace orbis::asset

@@ -1,6 +1,7 @@
 #include "core/steps/preview.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -109,13 +110,27 @@ private:
 
   // Where all places of a mesh are beyond what numbers hold, it stays where it is.
   void drop_beyond_numbers(std::size_t mesh, std::span<const Vec3d> positions) {
+    const std::array<Vec3d, 8> corners = box_around(mesh, positions);
     std::erase_if(placements_[mesh], [&](const Placement& placement) {
-      return !std::ranges::all_of(triangles_of_[mesh], [&](std::uint32_t t) {
-        return std::ranges::all_of(mesh_.triangles[t],
-                                   [&](mesh::Index v) { return is_finite(placement(positions[v])); });
-      });
+      return !std::ranges::all_of(corners, [&](const Vec3d& p) { return is_finite(placement(p)); });
     });
     if (placements_[mesh].empty()) placements_[mesh].emplace_back();
+  }
+
+  // The corners of a mesh's bounding box.
+  [[nodiscard]] std::array<Vec3d, 8> box_around(std::size_t mesh, std::span<const Vec3d> positions) const {
+    std::array<Vec3d, 8> corners{};
+    if (triangles_of_[mesh].empty()) return corners;
+    Vec3d low = positions[mesh_.triangles[triangles_of_[mesh].front()][0]], high = low;
+    for (const std::uint32_t t : triangles_of_[mesh])
+      for (const mesh::Index v : mesh_.triangles[t]) {
+        const Vec3d& p = positions[v];
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+      }
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      corners[i] = {(i & 1U) != 0 ? high.x : low.x, (i & 2U) != 0 ? high.y : low.y, (i & 4U) != 0 ? high.z : low.z};
+    return corners;
   }
 
   // Where a mesh is mirrored, its triangles go the other way around.

@@ -1,6 +1,7 @@
 // The picture of the result: the scene with every instance, in the materials' colours.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
@@ -139,6 +140,31 @@ TEST_CASE("a second node that mirrors the mesh shows the sides as they are there
   CHECK(red_pixels_of_model(b) > one * 3 / 2);
   b.json["nodes"][other]["scale"] = {1, 1, -1};
   CHECK(red_pixels_of_model(b) == one);
+}
+
+TEST_CASE("the preview shows the instances of a node, each with its own transform") {
+  GltfBuilder b = square(red, 1);
+  const std::size_t one = red_pixels_of_model(b);
+  // Beside each other; one turned away, one mirrored, which is seen from the front.
+  const auto places = b.add_accessor(std::vector<float>{0, 0, 0, 4, 0, 0, 8, 0, 0, 12, 0, 0}, "VEC3", 3);
+  const auto turns = b.add_accessor(std::vector<float>{0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1}, "VEC4", 4);
+  const auto scales = b.add_accessor(std::vector<float>{1, 1, 1, 1, 1, 1, -1, 1, 1, 1, 1, 1}, "VEC3", 3);
+  b.json["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"TRANSLATION", places}, {"ROTATION", turns}, {"SCALE", scales}};
+  const texture::Image image = preview_of(b);
+  std::vector<std::uint32_t> columns;
+  for (std::uint32_t x = image.width / 3; x < image.width; ++x)
+    if (red_pixels(image, x, x + 1) > 0) columns.push_back(x);
+  std::size_t gaps = 0, widest = 0;
+  for (std::size_t i = 1; i < columns.size(); ++i) {
+    const std::size_t gap = columns[i] - columns[i - 1] - 1;
+    gaps += gap > 5 ? 1 : 0;
+    widest = std::max<std::size_t>(widest, gap);
+  }
+  CHECK(gaps == 2); // three squares, and the place of the one that is turned away
+  CHECK(widest > 60);
+  CHECK(red_pixels_of_model(b) < one);
 }
 
 TEST_CASE("a model whose format does not tell sides apart is drawn from both") {
