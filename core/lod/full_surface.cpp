@@ -5,7 +5,7 @@
 
 #include "core/lod/deviation_quadric.h"
 #include "core/mesh/edges.h"
-#include "core/texture/shape.h"
+#include "core/texture/canvas.h"
 
 namespace orbis::lod {
 namespace {

@@ -14,7 +14,7 @@ namespace orbis {
 namespace {
 
 constexpr std::uint32_t preview_width = 1024, preview_height = 512;
-constexpr std::size_t most_triangles = 4'000'000; // with the copies of meshes that are shown more than once
+constexpr std::size_t most_copied_triangles = 1'000'000; // of meshes that are shown more than once; some 250 bytes each
 
 using asset::Placement;
 
@@ -95,13 +95,13 @@ private:
 
   void place() {
     const std::vector<Vec3d> positions = shape_.positions, normals = shape_.normals;
-    std::size_t all = 0;
+    std::size_t copied = 0;
     for (std::size_t m = 0; m < placements_.size(); ++m) {
       drop_beyond_numbers(m, positions);
-      all += placements_[m].size() * triangles_of_[m].size();
+      copied += (placements_[m].size() - 1) * triangles_of_[m].size();
     }
     copy_of_.resize(positions.size());
-    for (std::size_t m = 0; m < placements_.size() && all <= most_triangles; ++m)
+    for (std::size_t m = 0; m < placements_.size() && copied <= most_copied_triangles; ++m)
       for (std::size_t i = 1; i < placements_[m].size(); ++i) add_copy(m, placements_[m][i], positions, normals);
     for (std::size_t v = 0; v < positions.size(); ++v) put(v, placements_[mesh_of_vertex_[v]].front());
     for (std::size_t m = 0; m < placements_.size(); ++m)

@@ -28,7 +28,8 @@ OccluderTree::OccluderTree(std::span<const Vec3f> positions, std::span<const mes
 
 bool OccluderTree::hides(const Vec3f& origin, const Vec3f& direction, std::uint32_t component) const {
   if (occluders_.empty()) return tree_.meets(origin, direction);
-  return tree_.meets(origin, direction, [&](const RayHit& hit) {
+  // Two words, which std::function holds without an allocation.
+  return tree_.meets(origin, direction, [this, component](const RayHit& hit) {
     const Occluder& o = occluders_[hit.triangle];
     if (hit.from_behind && !o.hides_what_is_behind && o.component != component) return false;
     return o.mask == Occluder::none || !masks_[o.mask].leaves_out(hit.u, hit.v);
