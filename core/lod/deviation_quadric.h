@@ -105,6 +105,16 @@ struct DeviationQuadric {
     return q;
   }
 
+  // The same wherever in the atlas, as it is at a fixed place.
+  [[nodiscard]] static DeviationQuadric held_at(const PositionQuadric& at, double w) {
+    DeviationQuadric q;
+    q.pp = at.h;
+    q.gp = at.g;
+    q.c = at.c;
+    q.weight = w;
+    return q;
+  }
+
   DeviationQuadric& operator+=(const DeviationQuadric& o) {
     for (std::size_t i = 0; i < pp.size(); ++i) pp[i] += o.pp[i];
     for (std::size_t i = 0; i < 2; ++i) {

@@ -35,7 +35,7 @@ DeviationQuadric quadric_of(const FullSurface& full, std::uint32_t t) {
 
 } // namespace
 
-WedgeMesh::WedgeMesh(const FullSurface& full, mesh::ThreadPool& threads) {
+WedgeMesh::WedgeMesh(const FullSurface& full, mesh::ThreadPool& threads) : uv_scale_(full.uv_scale()) {
   make_wedges(full);
   list_corners();
   classify(threads);
@@ -301,6 +301,28 @@ void WedgeMesh::contract(std::uint32_t removed, std::uint32_t kept, const EdgeSi
   points[removed].first_corner = none;
   points[removed].is_alive = false;
   ++points[removed].version;
+  for (std::size_t i = 0; i < 2; ++i)
+    if (into[i] == from[i]) wedges[from[i]].point = kept;
+  for (const std::uint32_t t : sides.triangle)
+    for (const std::uint32_t w : triangles[t]) inherit(w);
+}
+
+// A wedge without a triangle leaves its quadric, at its place in the atlas, to another wedge of its point: what its
+// part of the surface is off by is not forgotten with it.
+void WedgeMesh::inherit(std::uint32_t wedge) {
+  const std::uint32_t point = wedges[wedge].point;
+  if (!points[point].is_alive || quadrics[wedge].weight == 0) return;
+  std::uint32_t heir = none;
+  bool is_used = false;
+  for_each_corner(point, [&](std::uint32_t corner) {
+    const std::uint32_t w = triangles[corner / 3][corner % 3];
+    is_used = is_used || w == wedge;
+    if (heir == none) heir = w;
+  });
+  if (is_used || heir == none) return;
+  const Uv at{uv_scale_ * wedges[wedge].uv.x, uv_scale_ * wedges[wedge].uv.y};
+  quadrics[heir] += DeviationQuadric::held_at(quadrics[wedge].at(at), quadrics[wedge].weight);
+  quadrics[wedge] = {};
 }
 
 std::uint64_t WedgeMesh::remove_component(std::uint32_t point) {

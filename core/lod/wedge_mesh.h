@@ -100,9 +100,11 @@ private:
   void list_corners();
   void classify(mesh::ThreadPool& threads);
   void wall_borders(const FullSurface& full);
+  void inherit(std::uint32_t wedge);
   void wall(const EdgeSides& sides, std::size_t side, std::uint32_t p, std::uint32_t q);
   [[nodiscard]] bool is_hole_of_three(std::uint32_t a, std::uint32_t b, const EdgeSides& sides) const;
 
+  double uv_scale_; // FullSurface::uv_scale
   std::vector<std::uint32_t> next_corner_;
   std::vector<std::uint32_t> mark_; // by point, for link_condition
   std::uint32_t marks_ = 0;

@@ -208,9 +208,9 @@ TEST_CASE("of a surface in patches of many materials seams give way before its s
   const lod::FullSurface full = world.full();
   mesh::ThreadPool threads(1);
   const lod::Level level = levels_of(world, counts({800})).front();
-  CHECK(lod::Ruler(full, threads).distances(level).from_full < 0.0022);
+  CHECK(lod::Ruler(full, threads).distances(level).from_full < 0.0026);
   CHECK(level.concessions.torn > 0);
-  CHECK(level.concessions.torn < 20);
+  CHECK(level.concessions.torn < level.mesh.triangles.size() / 10);
 }
 
 TEST_CASE("where the surface ends, no level shows what lies behind the rim, however few triangles it has") {

@@ -272,6 +272,34 @@ TEST_CASE("with output=zip every level is a file of its own, named in the manife
   CHECK(process(request, {}, progress).glb == result.glb);
 }
 
+TEST_CASE("a level's own file does not show what the level has lost") {
+  mesh::TriangleMesh speck = shapes::tetrahedron();
+  for (Vec3f& p : speck.positions) p = {0.002F * p.x + 2, 0.002F * p.y, 0.002F * p.z};
+  const mesh::TriangleMesh both = shapes::joined(shapes::bumpy_sphere(3), speck);
+  const auto split = both.triangles.end() - static_cast<std::ptrdiff_t>(speck.triangles.size());
+  GlbOfMesh glb;
+  nlohmann::json attributes, primitives;
+  attributes["POSITION"] = glb.add_positions(both.positions);
+  primitives = one_primitive(attributes, glb.add_indices({both.triangles.begin(), split}));
+  primitives[0]["primitives"].push_back(
+      one_primitive(attributes, glb.add_indices({split, both.triangles.end()}))[0]["primitives"][0]);
+  glb.document()["meshes"] = primitives;
+  one_node(glb.document());
+  const std::vector<std::byte> model = glb.bytes();
+  NoProgress progress;
+  Request request{model, {}, {}};
+  request.options.texture_size = 128;
+  set_option(request.options, "lods", "0.5,4");
+  set_option(request.options, "output", "zip");
+  const Result result = process(request, {}, progress);
+  REQUIRE(result.report.levels.at(1).lost_components == 1);
+  const std::map<std::string, std::vector<std::byte>> files = stored_members(result.glb);
+  CHECK(read(files.at("lod1.glb")).primitives.size() == 2);
+  const asset::Asset level = read(files.at("lod2.glb"));
+  REQUIRE(level.primitives.size() == 1);
+  CHECK(level.primitives[0].indices.size() == 3 * result.report.levels[1].triangles);
+}
+
 TEST_CASE("on a ragged sheet no vertex of a level flies away") {
   for (const unsigned seed : {1U, 2U, 3U}) {
     std::mt19937 random(seed);
