@@ -83,7 +83,7 @@ constexpr Effort effort_of(Quality quality) {
   case Quality::draft:
     return {1'000, 4'000, 1.0 / 240, 1, 1e-3, 0, 0, 0, 0};
   case Quality::standard:
-    return {2'000, 27'000, 1.0 / 60, 4, 1e-3, 1'000'000, 8, 8, 1e-2};
+    return {2'000, 27'000, 1.0 / 60, 6, 1e-3, 1'000'000, 8, 8, 1e-2};
   case Quality::high:
     break;
   }

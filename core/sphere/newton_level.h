@@ -3,12 +3,11 @@
 // that are too small on a coarse level stay so on every finer one.
 #pragma once
 
-#include <Eigen/SparseCholesky>
 #include <span>
 #include <vector>
 
 #include "core/mesh/thread_pool.h"
-#include "core/sphere/block_ordering.h"
+#include "core/sphere/block_cholesky.h"
 #include "core/sphere/global_step.h"
 
 namespace orbis::sphere {
@@ -29,16 +28,13 @@ public:
 
 private:
   [[nodiscard]] bool factorise(std::span<const Vec3d> points);
-  void assemble();
 
   const WholeLevel& level_;
   mesh::ThreadPool& pool_;
   TangentHessian hessian_;
   double exact_share_;
-  std::vector<double> mass_;           // by vertex: a third of the reference area of its triangles
-  Eigen::SparseMatrix<double> matrix_; // lower triangle
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, BlockOrdering> solver_;
-  bool analysed_ = false;
+  std::vector<double> shifts_; // by vertex
+  BlockCholesky solver_;
   std::vector<Tangent> gradient_, direction_;
   std::vector<Vec3d> trial_;
 };

@@ -104,6 +104,43 @@ TEST_CASE("the Hessian is symmetric and positive semi-definite") {
   }
 }
 
+TEST_CASE("what the sparse factorisation solves, multiplied by the matrix, is the right side again") {
+  for (const mesh::TriangleMesh& m : {shapes::tetrahedron(), shapes::sphere(0), ellipsoid(2), ellipsoid(5)}) {
+    Scene scene(m);
+    const std::size_t n = scene.points.size();
+    CAPTURE(n);
+    sphere::TangentHessian hessian;
+    hessian.build(scene.energy_of, scene.stars, scene.references, scene.points, 0, scene.pool);
+    std::vector<double> shifts(n);
+    for (std::size_t v = 0; v < n; ++v) shifts[v] = 0.01 * (1 + static_cast<double>(v % 7));
+    sphere::BlockCholesky solver(scene.stars);
+    for (std::uint32_t seed = 0; seed < 3; ++seed) {
+      for (double& shift : shifts) shift *= 1.5; // it is factorised anew
+      REQUIRE(solver.factorise(hessian, shifts));
+      const std::vector<Tangent> right = random_field(n, seed);
+      std::vector<Tangent> x = right, product(n);
+      solver.solve(x);
+      hessian.apply(x, product, scene.pool);
+      for (std::size_t v = 0; v < n; ++v) {
+        // The Hessian's blocks are floats, rounded on each side of the diagonal by themselves.
+        CHECK(std::abs(product[v].x + shifts[v] * x[v].x - right[v].x) < 1e-4);
+        CHECK(std::abs(product[v].y + shifts[v] * x[v].y - right[v].y) < 1e-4);
+      }
+    }
+  }
+}
+
+TEST_CASE("a matrix that is not positive definite is not factorised") {
+  Scene scene(ellipsoid(3));
+  sphere::TangentHessian hessian;
+  hessian.build(scene.energy_of, scene.stars, scene.references, scene.points, 0, scene.pool);
+  std::vector<double> shifts(scene.points.size(), 0.01);
+  sphere::BlockCholesky solver(scene.stars);
+  CHECK(solver.factorise(hessian, shifts));
+  shifts[100] = -1e6;
+  CHECK(!solver.factorise(hessian, shifts));
+}
+
 TEST_CASE("where nothing is indefinite, the Hessian is the derivative of the gradient") {
   // On a sphere mapped to itself every triangle is nearly isometric, and the twist's eigenvalue nearly 0.
   Scene scene(shapes::sphere(5));
