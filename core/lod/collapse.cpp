@@ -56,9 +56,11 @@ std::optional<Collapse> Collapser::propose(std::uint32_t a, std::uint32_t b, Sea
   if (!sides) return std::nullopt;
   const Point &at_a = mesh_.points[a], &at_b = mesh_.points[b];
   const auto both = [&](PointKind kind) { return at_a.kind == kind && at_b.kind == kind; };
-  if (both(PointKind::interior) || (both(PointKind::seam) && sides->is_border() && !at_a.is_joint && !at_b.is_joint)) {
-    if (attempt == 0 && seams == Seams::kept) return move_both(a, b, *sides);
-    if (seams == Seams::kept) --attempt;
+  const bool may_both_move =
+      both(PointKind::interior) || (both(PointKind::seam) && sides->is_border() && !at_a.is_joint && !at_b.is_joint);
+  if (seams == Seams::kept && may_both_move) {
+    if (attempt == 0) return move_both(a, b, *sides);
+    --attempt;
   }
   // An edge from seam to seam through a chart stays: to contract it would pinch the chart.
   const bool is_across = at_a.kind != PointKind::interior && at_b.kind != PointKind::interior && !sides->is_seam();
@@ -232,6 +234,16 @@ bool Collapser::keeps_triangles(const Collapse& collapse, const Goal& goal) cons
   return is_sound;
 }
 
+// The last wedge of a point in the primitive of this one; null where there is none.
+const Wedge* Collapser::same_primitive_at(std::uint32_t point, const Wedge& wedge) const {
+  const Wedge* found = nullptr;
+  mesh_.for_each_corner(point, [&](std::uint32_t corner) {
+    const Wedge& other = mesh_.wedges[mesh_.triangles[corner / 3][corner % 3]];
+    if (full_.primitive_of(other.region) == full_.primitive_of(wedge.region)) found = &other;
+  });
+  return found;
+}
+
 // Whether all wedges of the removed point that stay in the atlas find one of their own primitive at the kept point,
 // whose attributes they can take: else the two sides of a border between primitives would move apart in a morph.
 bool Collapser::finds_attributes(const Collapse& collapse) const {
@@ -239,14 +251,7 @@ bool Collapser::finds_attributes(const Collapse& collapse) const {
   mesh_.for_each_corner(collapse.removed, [&](std::uint32_t corner) {
     if (corner / 3 == collapse.sides.triangle[0] || corner / 3 == collapse.sides.triangle[1]) return;
     const std::uint32_t w = mesh_.triangles[corner / 3][corner % 3];
-    for (std::size_t i = 0; i < 2; ++i)
-      if (w == collapse.sides.at_a[i] && w != collapse.into[i]) return;
-    bool found = false;
-    mesh_.for_each_corner(collapse.kept, [&](std::uint32_t other) {
-      const Wedge& kept = mesh_.wedges[mesh_.triangles[other / 3][other % 3]];
-      found = found || full_.primitive_of(kept.region) == full_.primitive_of(mesh_.wedges[w].region);
-    });
-    all = all && found;
+    all = all && (!collapse.stays(w) || same_primitive_at(collapse.kept, mesh_.wedges[w]) != nullptr);
   });
   return all;
 }
@@ -357,13 +362,10 @@ void Collapser::tear(const Collapse& collapse) {
   mesh_.for_each_corner(collapse.removed, [&](std::uint32_t corner) {
     const std::uint32_t w = mesh_.triangles[corner / 3][corner % 3];
     Wedge& wedge = mesh_.wedges[w];
-    if ((w == sides.at_a[0] && w != collapse.into[0]) || (w == sides.at_a[1] && w != collapse.into[1])) return;
-    mesh_.for_each_corner(collapse.kept, [&](std::uint32_t other) {
-      const Wedge& kept = mesh_.wedges[mesh_.triangles[other / 3][other % 3]];
-      if (full_.primitive_of(kept.region) != full_.primitive_of(wedge.region)) return;
-      wedge.source = kept.source;
-      wedge.weights = kept.weights;
-    });
+    const Wedge* const kept = collapse.stays(w) ? same_primitive_at(collapse.kept, wedge) : nullptr;
+    if (kept == nullptr) return;
+    wedge.source = kept->source;
+    wedge.weights = kept->weights;
   });
   if (!collapse.tears()) return;
   for (const std::uint32_t t : sides.triangle)

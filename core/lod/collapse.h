@@ -36,6 +36,10 @@ struct Collapse {
   Seams seams = Seams::kept;
 
   [[nodiscard]] bool tears() const { return into[0] == sides.at_a[0] || into[1] == sides.at_a[1]; }
+  // Whether a wedge of the removed point stays in the atlas as it is.
+  [[nodiscard]] bool stays(std::uint32_t wedge) const {
+    return (wedge != sides.at_a[0] || into[0] == wedge) && (wedge != sides.at_a[1] || into[1] == wedge);
+  }
   [[nodiscard]] double price() const { return seams == Seams::kept ? 1 : price_of_seams; }
 };
 
@@ -90,6 +94,7 @@ private:
   [[nodiscard]] bool stays_inside(std::uint32_t wedge, const Vec2f& to) const;
   [[nodiscard]] bool keeps_charts(const Collapse& collapse, const Goal& goal) const;
   [[nodiscard]] bool keeps_triangles(const Collapse& collapse, const Goal& goal) const;
+  [[nodiscard]] const Wedge* same_primitive_at(std::uint32_t point, const Wedge& wedge) const;
   [[nodiscard]] bool finds_attributes(const Collapse& collapse) const;
   [[nodiscard]] std::optional<Goal> check(const Collapse& collapse);
   [[nodiscard]] bool add_twins(const Collapse& collapse);

@@ -7,15 +7,6 @@
 namespace orbis {
 namespace {
 
-double area_of(const mesh::TriangleMesh& mesh) {
-  double sum = 0;
-  for (const auto& [i, j, k] : mesh.triangles) {
-    const Vec3d a(mesh.positions[i]), b(mesh.positions[j]), c(mesh.positions[k]);
-    sum += norm(cross(b - a, c - a)) / 2;
-  }
-  return sum;
-}
-
 // The means of measures that are means themselves, weighted by area; the 99th percentile becomes the worst of them.
 class Mean {
 public:
@@ -47,6 +38,15 @@ private:
 };
 
 } // namespace
+
+double area_of(const mesh::TriangleMesh& mesh) {
+  double sum = 0;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Vec3d a(mesh.positions[i]), b(mesh.positions[j]), c(mesh.positions[k]);
+    sum += norm(cross(b - a, c - a)) / 2;
+  }
+  return sum;
+}
 
 sphere::Distortion measure(const Surface& surface, std::span<const Vec3f> points, Report& report) {
   if (surface.components.size() == 1 && !surface.components[0].has_caps()) {

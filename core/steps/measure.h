@@ -8,6 +8,9 @@
 
 namespace orbis {
 
+// Of all triangles, in the square of the positions' unit.
+[[nodiscard]] double area_of(const mesh::TriangleMesh& mesh);
+
 // The measures of the delivered triangles, each component scaled to its own part of its sphere. Means are weighted by
 // surface area over all components; each component's own go to report.components. points: one per vertex of the
 // surface.

@@ -6,18 +6,10 @@
 #include <string>
 
 #include "core/remesh/polyhedron.h"
+#include "core/steps/measure.h"
 
 namespace orbis {
 namespace {
-
-double area_of(const mesh::TriangleMesh& mesh) {
-  double sum = 0;
-  for (const auto& [i, j, k] : mesh.triangles) {
-    const Vec3d a(mesh.positions[i]), b(mesh.positions[j]), c(mesh.positions[k]);
-    sum += norm(cross(b - a, c - a)) / 2;
-  }
-  return sum;
-}
 
 // Why a component keeps its triangles; empty where it need not.
 std::string reason_to_keep(const Surface& surface, const Component& c) {
